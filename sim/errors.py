@@ -1,0 +1,7 @@
+"""The one base class for what a user can get wrong with a scene or a machine."""
+
+from __future__ import annotations
+
+
+class SimError(Exception):
+    """A scene, a file or the machine does not allow what was asked; the message is one line that says what and where."""
