@@ -1,0 +1,1 @@
+"""What the robot does: missions that scan rooms and find doors, their command line and their recordings."""

@@ -1,0 +1,124 @@
+"""Progress on the terminal: a bar that names the stage, a line an event, a table of doors at the end."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from mission.evaluation import DoorEvaluation
+from mission.events import (
+    DoorsEvaluated,
+    Drove,
+    Event,
+    MissionFinished,
+    MissionStarted,
+    Planned,
+    Registered,
+    Remarked,
+)
+
+
+class TerminalProgress:
+    """A sink that tells a person what goes on."""
+
+    def __init__(self, console: Console) -> None:
+        """Write to a console: standard error, so that results can be piped."""
+        self._console = console
+        self._progress = Progress(
+            SpinnerColumn(),
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=24),
+            TextColumn("{task.completed:3.0f} % of the walls seen"),
+            TimeElapsedColumn(),
+            console=console,
+            transient=True,
+        )
+        self._task = self._progress.add_task("loading", total=100)
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._progress.stop()
+
+    def stage(self, name: str) -> None:
+        """Show what the program is busy with."""
+        self._progress.update(self._task, description=f"{name:<14}")
+
+    def handle(self, event: Event) -> None:
+        """Take one event."""
+        match event:
+            case MissionStarted():
+                x, y = event.world_from_base[:2, 3]
+                self._say(event, f"[bold]{event.scene}[/bold], seed {event.seed}: MoPAD starts at ({x:.2f}, {y:.2f})")
+            case Registered():
+                x, y = event.world_from_scanner[:2, 3]
+                fit = event.reason if event.rmse == 0 or not event.accepted else f"residual {event.rmse * 1e3:.1f} mm"
+                self._say(event, f"scan {event.scan_number} at ({x:.2f}, {y:.2f}): {fit}")
+            case Planned():
+                self._planned(event)
+            case Drove() if not event.arrived:
+                self._say(event, f"[yellow]stopped on the way: {event.reason}[/yellow]")
+            case Remarked():
+                self._say(event, f"[yellow]{event.text}[/yellow]" if event.level == "warning" else event.text)
+            case DoorsEvaluated():
+                self._console.print(doors_table(event))
+            case MissionFinished():
+                self._say(event, f"{event.outcome}: {event.reason}")
+
+    def _planned(self, event: Planned) -> None:
+        plan = event.plan
+        self._progress.update(self._task, completed=100 * plan.coverage)
+        if plan.chosen is None:
+            self._say(event, f"room {event.room} complete: {plan.stop_reason}, {plan.coverage:.0%} of the walls seen")
+            return
+        chosen = plan.candidates[plan.chosen]
+        x, y = chosen.position
+        self._say(
+            event,
+            f"next best scan at ({x:.2f}, {y:.2f}), {chosen.travel:.1f} m away, "
+            f"of {len(plan.candidates)} candidates; {plan.coverage:.0%} of the walls seen",
+        )
+
+    def _say(self, event: Event, text: str) -> None:
+        self._console.print(f"[dim]{event.time / 1e9:6.0f} s[/dim]  {text}", highlight=False)
+
+
+def doors_table(event: DoorsEvaluated) -> Table:
+    """Each door beside its joint, and the doors that were missed."""
+    table = Table(title=f"Room {event.room}: {len(event.doors)} doors", title_justify="left")
+    for column in ("door", "kind", "state", "size [m]", "angle", "joint", "error", "precision", "recall", "true door"):
+        table.add_column(column, justify="left" if column in {"door", "kind", "state", "true door"} else "right")
+    for door in event.doors:
+        table.add_row(*_row(door))
+    for name in event.missed:
+        table.add_row(*["[red]missed[/red]", *["-"] * 8, name])
+    return table
+
+
+def _row(evaluation: DoorEvaluation) -> list[str]:
+    door, areas = evaluation.door, evaluation.overlap
+    return [
+        evaluation.door_id,
+        door.kind,
+        door.state,
+        f"{door.rectangle.width:.3f} x {door.rectangle.height:.3f}",
+        _degrees(door.opening_angle),
+        _degrees(evaluation.true_angle),
+        _degrees(evaluation.angle_error),
+        f"{areas.precision:.3f}" if areas else "-",
+        f"{areas.recall:.3f}" if areas else "-",
+        evaluation.true_name or "[red]false positive[/red]",
+    ]
+
+
+def _degrees(angle: float | None) -> str:
+    return "-" if angle is None or np.isnan(angle) else f"{np.degrees(angle):.1f}°"

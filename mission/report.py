@@ -1,0 +1,219 @@
+"""doors.json and summary.json: what a mission found, for machines."""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mission.evaluation import DoorEvaluation
+from mission.events import (
+    Coloured,
+    DoorsDetected,
+    DoorsEvaluated,
+    Drove,
+    Event,
+    MissionFinished,
+    MissionStarted,
+    Planned,
+    Registered,
+    Structured,
+)
+
+SCHEMA = 1
+"""Version of the layout of doors.json."""
+
+
+@dataclass
+class RoomReport:
+    """What is known about a room."""
+
+    id: int
+    walls: int = 0
+    scans: int = 0
+    coverage: float = 0.0
+    stop_reason: str | None = None
+    doors: tuple[DoorEvaluation, ...] = ()
+    missed: tuple[str, ...] = ()
+
+
+@dataclass
+class Report:
+    """A sink that gathers the results of a mission; `write` puts them on disk at any time."""
+
+    started: MissionStarted | None = None
+    finished: MissionFinished | None = None
+    rooms: dict[int, RoomReport] = field(default_factory=dict)
+    metres: float = 0.0
+    """Way driven, as odometry has it [m]."""
+    registrations: list[Registered] = field(default_factory=list)
+
+    def handle(self, event: Event) -> None:
+        """Take one event."""
+        room = self.rooms.setdefault(event.room, RoomReport(event.room))
+        match event:
+            case MissionStarted():
+                self.started = event
+            case Registered():
+                self.registrations.append(event)
+            case Coloured():
+                room.scans += 1
+            case Structured():
+                room.walls = len(event.structure.walls)
+            case Planned():
+                room.coverage, room.stop_reason = event.plan.coverage, event.plan.stop_reason
+            case Drove():
+                steps = np.diff(event.world_from_base[:, :2, 3], axis=0)
+                self.metres += float(np.linalg.norm(steps, axis=1).sum())
+            case DoorsDetected():
+                room.walls = len(event.results)
+            case DoorsEvaluated():
+                room.doors, room.missed = event.doors, event.missed
+            case MissionFinished():
+                self.finished = event
+
+    def doors(self) -> dict[str, Any]:
+        """The content of doors.json."""
+        return {
+            "schema": SCHEMA,
+            "scene": self.started.scene if self.started else None,
+            "seed": self.started.seed if self.started else None,
+            "rooms": [
+                {
+                    "id": room.id,
+                    "walls": room.walls,
+                    "scans": room.scans,
+                    "doors": [_door(door) for door in room.doors],
+                }
+                for room in self.rooms.values()
+            ],
+        }
+
+    def metrics(self) -> dict[str, float | int | None]:
+        """Counts and means over the doors of all rooms; None where there is nothing to average."""
+        doors = [door for room in self.rooms.values() for door in room.doors]
+        found = [door.overlap for door in doors if door.overlap is not None]
+        missed = sum(len(room.missed) for room in self.rooms.values())
+        errors = [abs(np.degrees(door.angle_error)) for door in doors if door.angle_error is not None]
+        return {
+            "doors": len(found) + missed,
+            "found": len(found),
+            "false_positives": len(doors) - len(found),
+            "precision": _mean([o.precision for o in found]),
+            "recall": _mean([o.recall for o in found]),
+            "e_abs": _mean([o.e_abs for o in found]),
+            "e_rel": _mean([o.e_rel for o in found]),
+            "angle_mae_deg": _mean(errors),
+            "angle_max_deg": _rounded(max(errors)) if errors else None,
+            "coverage": _mean([room.coverage for room in self.rooms.values()]),
+        }
+
+    def summary(self, stage_seconds: Mapping[str, float], wall_clock: float) -> dict[str, Any]:
+        """The content of summary.json.
+
+        Args:
+            stage_seconds: Wall clock time of each stage [s].
+            wall_clock: Of the whole program so far [s].
+        """
+        return {
+            "schema": SCHEMA,
+            "scene": self.started.scene if self.started else None,
+            "seed": self.started.seed if self.started else None,
+            "outcome": self.finished.outcome if self.finished else None,
+            "reason": self.finished.reason if self.finished else None,
+            "metrics": self.metrics(),
+            "rooms": [
+                {
+                    "id": room.id,
+                    "scans": room.scans,
+                    "coverage": _rounded(room.coverage),
+                    "stop_reason": room.stop_reason,
+                    "missed": list(room.missed),
+                }
+                for room in self.rooms.values()
+            ],
+            "metres_driven": _rounded(self.metres),
+            "mission_seconds": _rounded(self.finished.time / 1e9) if self.finished else None,
+            "registration": [_registration(event) for event in self.registrations],
+            "wall_clock_seconds": round(wall_clock, 3),
+            "stage_seconds": {stage: round(seconds, 3) for stage, seconds in stage_seconds.items()},
+            "peak_memory_bytes": peak_memory(),
+            "versions": self.started.versions if self.started else {},
+            "config": self.started.config if self.started else {},
+        }
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """Write a file in one step: a reader sees the old content or the new, never a part."""
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n")
+    part.replace(path)
+
+
+def peak_memory() -> int:
+    """Largest resident set of this process so far [bytes]."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024  # Linux counts KiB
+
+
+def _door(evaluation: DoorEvaluation) -> dict[str, Any]:
+    door = evaluation.door
+    return {
+        "id": evaluation.door_id,
+        "wall": evaluation.wall,
+        "kind": door.kind,
+        "state": door.state,
+        "corners": [[_rounded(x) for x in corner] for corner in evaluation.corners_in_world],
+        "width": _rounded(door.rectangle.width),
+        "height": _rounded(door.rectangle.height),
+        "opening_angle_deg": _degrees(door.opening_angle),
+        "leaf_angles_deg": [_degrees(leaf.opening_angle) for leaf in door.leaves],
+        "hinge": evaluation.hinge,
+        "opens": evaluation.opens,
+        "truth": _truth(evaluation),
+    }
+
+
+def _truth(evaluation: DoorEvaluation) -> dict[str, Any] | None:
+    if evaluation.overlap is None:
+        return None
+    return {
+        "door": evaluation.true_name,
+        "angle_deg": _degrees(evaluation.true_angle),
+        "angle_error_deg": _degrees(evaluation.angle_error),
+        "precision": _rounded(evaluation.overlap.precision),
+        "recall": _rounded(evaluation.overlap.recall),
+        "e_abs": _rounded(evaluation.overlap.e_abs),
+        "e_rel": _rounded(evaluation.overlap.e_rel),
+    }
+
+
+def _registration(event: Registered) -> dict[str, Any]:
+    error = np.linalg.inv(event.true_world_from_scanner) @ event.world_from_scanner
+    angle = np.arccos(np.clip((np.trace(error[:3, :3]) - 1) / 2, -1, 1))
+    return {
+        "scan": event.scan_number,
+        "accepted": event.accepted,
+        "reason": event.reason,
+        "fitness": _rounded(event.fitness),
+        "translation_error_m": round(float(np.linalg.norm(error[:3, 3])), 5),
+        "rotation_error_deg": round(float(np.degrees(angle)), 4),
+    }
+
+
+def _mean(values: list[float]) -> float | None:
+    return _rounded(float(np.mean(values))) if values else None
+
+
+def _degrees(angle: float | None) -> float | None:
+    return None if angle is None or np.isnan(angle) else round(float(np.degrees(angle)), 2) + 0.0  # no "-0.0"
+
+
+def _rounded(value: float) -> float:
+    return round(float(value), 4) + 0.0
