@@ -1,0 +1,52 @@
+"""Which geoms light and laser meet: the same answer for rendering and for rays."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+VISUAL_GROUPS = 3
+"""Groups 0 to 2 are drawn by MuJoCo's convention; 3 to 5 hold collision shapes."""
+GLASS_ALPHA = 0.5
+"""A geom less opaque than this is glass, and lets light through."""
+
+SHOWN, HIDDEN = 0, mujoco.mjNGROUP - 1
+"""The two groups that `showing` sorts the geoms into."""
+
+
+def effective_rgba(model: mujoco.MjModel) -> NDArray[np.float32]:
+    """(ngeom, 4) colour that each geom is drawn in: its material's, unless its own differs from MuJoCo's default."""
+    rgba = model.geom_rgba.copy()
+    from_material = (model.geom_matid >= 0) & (rgba == np.float32([0.5, 0.5, 0.5, 1])).all(axis=1)
+    rgba[from_material] = model.mat_rgba[model.geom_matid[from_material]]
+    return rgba
+
+
+def visible_geoms(model: mujoco.MjModel, hidden_bodies: Collection[int] = ()) -> NDArray[np.bool_]:
+    """Marks the geoms that a sensor can see.
+
+    Args:
+        model: the world.
+        hidden_bodies: ids of bodies whose geoms the sensor does not see: the robot that carries it.
+
+    Returns:
+        (ngeom,) True for geoms of a visual group, of at least half opacity, and not on a hidden body.
+    """
+    group = np.clip(model.geom_group, 0, mujoco.mjNGROUP - 1)
+    own = np.isin(model.geom_bodyid, list(hidden_bodies))
+    return (group < VISUAL_GROUPS) & (effective_rgba(model)[:, 3] >= GLASS_ALPHA) & ~own
+
+
+@contextmanager
+def showing(model: mujoco.MjModel, visible: NDArray[np.bool_]) -> Iterator[None]:
+    """Sorts the geoms into the groups `SHOWN` and `HIDDEN` for the length of a `with` block."""
+    groups = model.geom_group.copy()
+    model.geom_group[:] = np.where(visible, SHOWN, HIDDEN)
+    try:
+        yield
+    finally:
+        model.geom_group[:] = groups
