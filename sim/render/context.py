@@ -10,7 +10,10 @@ from typing import Any
 
 from sim.errors import SimError
 
-_LIBRARIES = {"egl": (("libEGL.so.1",), ("libOpenGL.so.0", "libGL.so.1")), "osmesa": (("libOSMesa.so.8", "libOSMesa.so"),)}
+_LIBRARIES = {
+    "egl": (("libEGL.so.1",), ("libOpenGL.so.0", "libGL.so.1")),
+    "osmesa": (("libOSMesa.so.8", "libOSMesa.so"),),
+}
 """Shared libraries of each back end: one of every group must load."""
 
 _HELP = "install software OpenGL with `apt-get install libegl1 libgl1` (or `apt-get install libosmesa6`)"

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from types import TracebackType
 
+import cv2
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -110,8 +111,9 @@ class Renderer:
         colours = np.empty((view.height, view.width, 3), np.uint8)
         raw = np.empty((view.height, view.width), np.float32)
         mujoco.mjr_readPixels(colours, raw, rect, self._mjr)
-        segments = np.ascontiguousarray(colours[..., :2]).view("<u2")[..., 0]  # red is the low byte
-        return Depth(raw, segments, geom_ids)
+        low_high = np.empty((view.height, view.width, 2), np.uint8)
+        cv2.mixChannels([colours], [low_high], [0, 0, 1, 1])  # red is the low byte of the segment, green the high one
+        return Depth(raw, low_high.view("<u2")[..., 0], geom_ids)
 
     def albedo(self, data: mujoco.MjData, view: View) -> NDArray[np.uint8]:
         """Renders texture x rgba without any light: (height, width, 3) sRGB, bottom row first, black where nothing is."""
