@@ -1,0 +1,181 @@
+"""What the mission keeps of a scan: a coarse range image, and points spread evenly over the surfaces, with normals."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from mission.rigid import Pose, rotated, transformed
+
+if TYPE_CHECKING:
+    from sim.scanner import Scan
+
+Image = NDArray[np.float64]
+
+
+class SampleParameters(BaseModel):
+    """How a scan is thinned and where its normals come from."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    step: float = Field(float(np.deg2rad(0.24)), gt=0, le=0.02, description="pitch of the coarse range image [rad]")
+    window: float = Field(float(np.deg2rad(1.7)), gt=0, le=0.1, description="side of a normal's window [rad]")
+    spacing: float = Field(0.03, gt=0, le=0.2, description="one point is kept in a cube of this side [m]")
+    maximum_range: float = Field(30.0, gt=2, description="points beyond are not of this room [m]")
+    roughness: float = Field(0.008, gt=0, description="largest residual (1 sigma) of a surface called flat [m]")
+    maximum_incidence: float = Field(
+        float(np.deg2rad(82)), gt=0, lt=np.pi / 2, description="beyond it a normal is not trusted [rad]"
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class ScanSample:
+    """A thinned scan, in the scanner frame."""
+
+    points: NDArray[np.float32]
+    """(N, 3) at most one point in a cube [m]; on flat surfaces drawn to the plane fitted there."""
+    normals: NDArray[np.float32]
+    """(N, 3) unit normals towards the scanner; NaN where the surface is not flat."""
+    ranges: NDArray[np.float32]
+    """(E, A) coarse range image [m], NaN where nothing came back."""
+    elevations: NDArray[np.float64]
+    """(E,) [rad], descending, evenly spaced."""
+    azimuths: NDArray[np.float64]
+    """(A,) [rad], ascending, evenly spaced."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosedSample:
+    """A scan sample at its place in the world."""
+
+    sample: ScanSample
+    world_from_scanner: Pose
+    points_in_world: NDArray[np.float32]
+    """(N, 3) [m]."""
+    normals_in_world: NDArray[np.float32]
+    """(N, 3) unit; NaN where the surface is not flat."""
+
+    @property
+    def scanner_in_world(self) -> NDArray[np.float64]:
+        """(3,) origin of the beams [m]."""
+        return self.world_from_scanner[:3, 3]
+
+
+def place(sample: ScanSample, world_from_scanner: Pose) -> PosedSample:
+    """Puts a sample where its scan was taken."""
+    return PosedSample(
+        sample=sample,
+        world_from_scanner=world_from_scanner,
+        points_in_world=transformed(sample.points, world_from_scanner),
+        normals_in_world=rotated(sample.normals, world_from_scanner),
+    )
+
+
+def sample_scan(scan: Scan, parameters: SampleParameters | None = None) -> ScanSample:
+    """Thins a scan for registration, structure and voxels."""
+    parameters = parameters or SampleParameters()
+    rows = _stride(scan.elevations, parameters.step)
+    columns = _stride(scan.azimuths, parameters.step)
+    elevations = np.asarray(scan.elevations, float)[::rows]
+    azimuths = np.asarray(scan.azimuths, float)[::columns]
+    ranges = np.ascontiguousarray(scan.ranges[::rows, ::columns])
+
+    smooth, normals = _planes(ranges, elevations, azimuths, parameters)
+    seen = np.isfinite(ranges) & (ranges < parameters.maximum_range)
+    flat = np.isfinite(smooth)[seen]
+    directions = _directions(elevations, azimuths)[seen]
+    points = directions * np.where(flat, smooth[seen], ranges[seen])[:, None]
+    kept = thinned(points, parameters.spacing, first=flat)
+    return ScanSample(
+        points=points[kept].astype(np.float32),
+        normals=normals[seen][kept].astype(np.float32),
+        ranges=ranges,
+        elevations=elevations,
+        azimuths=azimuths,
+    )
+
+
+def thinned(points: NDArray[np.floating], spacing: float, *, first: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Ascending indices of one point a cube of side `spacing`: the earliest, but one of `first` where there is any."""
+    if len(points) == 0:
+        return np.zeros(0, np.intp)
+    cube = np.floor(points / spacing).astype(np.int64)
+    cube -= cube.min(axis=0)
+    size = cube.max(axis=0) + 1
+    key = (cube[:, 0] * size[1] + cube[:, 1]) * size[2] + cube[:, 2]
+    order = np.concatenate([np.flatnonzero(first), np.flatnonzero(~first)])
+    return np.sort(order[np.unique(key[order], return_index=True)[1]])
+
+
+def _stride(angles: NDArray[np.floating], step: float) -> int:
+    return max(1, int(round(step / abs(float(angles[1] - angles[0])))))
+
+
+def _directions(elevations: NDArray[np.float64], azimuths: NDArray[np.float64]) -> Image:
+    """(E, A, 3) unit vectors of the beams."""
+    e, a = np.meshgrid(elevations, azimuths, indexing="ij")
+    return np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)], axis=-1)
+
+
+def _planes(
+    ranges: NDArray[np.float32],
+    elevations: NDArray[np.float64],
+    azimuths: NDArray[np.float64],
+    parameters: SampleParameters,
+) -> tuple[Image, Image]:
+    """Ranges (E, A) of the planes fitted round each beam, and normals (E, A, 3); NaN where no plane fits.
+
+    On a plane n.p = h a beam of direction d has the range h / (n.d): inverse range is linear in d, and the normal
+    equations depend on the pattern alone (Badino et al., Fast and accurate computation of surface normals from range
+    images, ICRA 2011). All is done in the frame of the beam's own azimuth, where they depend on the row alone.
+    """
+    from scipy.ndimage import correlate1d
+
+    pitch = abs(float(azimuths[1] - azimuths[0]))
+    half = max(1, int(round(parameters.window / pitch / 2)))
+    full_turn = abs(len(azimuths) * pitch - 2 * np.pi) < 1.5 * pitch
+    around = pitch * np.arange(-half, half + 1)
+    ones = np.ones(2 * half + 1)
+
+    def windowed(image: Image, weights: NDArray[np.float64]) -> Image:
+        rows = correlate1d(image, ones, axis=0, mode="constant")
+        return correlate1d(rows, weights, axis=1, mode="wrap" if full_turn else "constant")
+
+    inverse = np.nan_to_num(1 / ranges.astype(float), nan=0.0)
+    level = inverse * np.cos(elevations)[:, None]
+    right = np.stack(
+        [
+            windowed(level, np.cos(around)),
+            windowed(level, np.sin(around)),
+            windowed(inverse * np.sin(elevations)[:, None], ones),
+        ]
+    )
+    whole = windowed((inverse > 0).astype(float), ones) > len(ones) ** 2 - 0.5
+    solver = _inverse_normal_matrices(elevations, around)
+    slopes = np.stack([sum(solver[:, k, i, None] * right[i] for i in range(3)) for k in range(3)])
+
+    residual = windowed(inverse**2, ones) - np.sum(slopes * right, axis=0)
+    sigma = np.sqrt(np.maximum(residual, 0)) / len(ones)
+    fitted = slopes[0] * np.cos(elevations)[:, None] + slopes[2] * np.sin(elevations)[:, None]
+    length = np.sqrt(np.sum(slopes**2, axis=0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        smooth = 1 / fitted
+        flat = whole & (sigma * smooth**2 < parameters.roughness) & (np.abs(smooth - ranges) < 4 * parameters.roughness)
+        flat &= fitted > np.cos(parameters.maximum_incidence) * length
+        x, y, z = -slopes / length
+    c, s = np.cos(azimuths), np.sin(azimuths)
+    normals = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+    return np.where(flat, smooth, np.nan), np.where(flat[..., None], normals, np.nan)
+
+
+def _inverse_normal_matrices(elevations: NDArray[np.float64], around: NDArray[np.float64]) -> Image:
+    """(E, 3, 3) inverse of the sum of d d^T over the window of a beam in each row."""
+    rows = sliding_window_view(np.pad(elevations, len(around) // 2, mode="reflect", reflect_type="odd"), len(around))
+    e, a = rows[:, :, None], around[None, None, :]
+    d = np.stack(np.broadcast_arrays(np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)), axis=-1)
+    return np.linalg.inv(np.einsum("eijk,eijl->ekl", d, d))
