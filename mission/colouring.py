@@ -85,7 +85,7 @@ def _sectors(scan: Scan, photos: Sequence[Photo]) -> list[tuple[NDArray[np.intp]
     leaders = np.argmax(same, axis=1)
     nearest = leaders[np.argmin(off, axis=0)]
     return [
-        (np.flatnonzero(nearest == leader), [photos[k] for k in np.flatnonzero(leaders == leader)])
+        (np.flatnonzero(nearest == leader), [photos[k] for k in range(len(photos)) if leaders[k] == leader])
         for leader in np.unique(leaders)
         if np.any(nearest == leader)
     ]

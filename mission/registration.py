@@ -26,20 +26,26 @@ class RegistrationParameters(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    points: int = Field(6000, ge=500, description="points of the scan that look for a partner in the map")
-    maximum_range: float = Field(15.0, gt=2, description="of these points from the scanner [m]")
+    points: int = Field(default=6000, ge=500, description="points of the scan that look for a partner in the map")
+    maximum_range: float = Field(default=15.0, gt=2, description="of these points from the scanner [m]")
     reaches: tuple[float, ...] = Field(
-        (1.0, 0.5, 0.25, 0.12, 0.06, 0.04), min_length=1, description="distance to a partner, round by round [m]"
+        default=(1.0, 0.5, 0.25, 0.12, 0.06, 0.04),
+        min_length=1,
+        description="distance to a partner, round by round [m]",
     )
-    iterations: int = Field(10, ge=1, description="at most, a round")
-    minimum_fitness: float = Field(0.35, ge=0, le=1, description="share of the points with a partner in the last round")
-    maximum_rmse: float = Field(0.010, gt=0, description="point-to-plane residual in the last round [m]")
+    iterations: int = Field(default=10, ge=1, description="at most, a round")
+    minimum_fitness: float = Field(
+        default=0.35, ge=0, le=1, description="share of the points with a partner in the last round"
+    )
+    maximum_rmse: float = Field(default=0.010, gt=0, description="point-to-plane residual in the last round [m]")
     minimum_constraint: float = Field(
-        0.01, ge=0, le=1, description="share of the partners that must hold the least held direction"
+        default=0.01, ge=0, le=1, description="share of the partners that must hold the least held direction"
     )
-    maximum_shift: float = Field(0.6, gt=0, description="of the guess by the registration [m]")
-    maximum_turn: float = Field(float(np.deg2rad(12)), gt=0, description="of the guess by the registration [rad]")
-    spacing: float = Field(0.03, gt=0, description="of the map's points [m]")
+    maximum_shift: float = Field(default=0.6, gt=0, description="of the guess by the registration [m]")
+    maximum_turn: float = Field(
+        default=float(np.deg2rad(12)), gt=0, description="of the guess by the registration [rad]"
+    )
+    spacing: float = Field(default=0.03, gt=0, description="of the map's points [m]")
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,13 +23,15 @@ class SampleParameters(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    step: float = Field(float(np.deg2rad(0.24)), gt=0, le=0.02, description="pitch of the coarse range image [rad]")
-    window: float = Field(float(np.deg2rad(1.7)), gt=0, le=0.1, description="side of a normal's window [rad]")
-    spacing: float = Field(0.03, gt=0, le=0.2, description="one point is kept in a cube of this side [m]")
-    maximum_range: float = Field(30.0, gt=2, description="points beyond are not of this room [m]")
-    roughness: float = Field(0.008, gt=0, description="largest residual (1 sigma) of a surface called flat [m]")
+    step: float = Field(
+        default=float(np.deg2rad(0.24)), gt=0, le=0.02, description="pitch of the coarse range image [rad]"
+    )
+    window: float = Field(default=float(np.deg2rad(1.7)), gt=0, le=0.1, description="side of a normal's window [rad]")
+    spacing: float = Field(default=0.03, gt=0, le=0.2, description="one point is kept in a cube of this side [m]")
+    maximum_range: float = Field(default=30.0, gt=2, description="points beyond are not of this room [m]")
+    roughness: float = Field(default=0.008, gt=0, description="largest residual (1 sigma) of a surface called flat [m]")
     maximum_incidence: float = Field(
-        float(np.deg2rad(82)), gt=0, lt=np.pi / 2, description="beyond it a normal is not trusted [rad]"
+        default=float(np.deg2rad(82)), gt=0, lt=np.pi / 2, description="beyond it a normal is not trusted [rad]"
     )
 
 
@@ -139,7 +141,7 @@ def _planes(
     pitch = abs(float(azimuths[1] - azimuths[0]))
     half = max(1, int(round(parameters.window / pitch / 2)))
     full_turn = abs(len(azimuths) * pitch - 2 * np.pi) < 1.5 * pitch
-    around = pitch * np.arange(-half, half + 1)
+    around: NDArray[np.float64] = pitch * np.arange(-half, half + 1, dtype=np.float64)
     ones = np.ones(2 * half + 1)
 
     def windowed(image: Image, weights: NDArray[np.float64]) -> Image:

@@ -20,11 +20,13 @@ class VisibilityParameters(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    minimum_range: float = Field(1.5, ge=0, description="nothing nearer returns: VZ-400 [m]")
+    minimum_range: float = Field(default=1.5, ge=0, description="nothing nearer returns: VZ-400 [m]")
     maximum_incidence: float = Field(
-        float(np.deg2rad(75)), gt=0, lt=np.pi / 2, description="flatter beams may get lost on a surface [rad]"
+        default=float(np.deg2rad(75)), gt=0, lt=np.pi / 2, description="flatter beams may get lost on a surface [rad]"
     )
-    shadow: float = Field(float(np.deg2rad(2)), gt=0, description="grid of the directions with something near [rad]")
+    shadow: float = Field(
+        default=float(np.deg2rad(2)), gt=0, description="grid of the directions with something near [rad]"
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from sim.scanner import Scan
 
 
 @dataclass(frozen=True)
@@ -15,16 +17,6 @@ class Box:
     centre: tuple[float, float, float]
     size: tuple[float, float, float]
     yaw: float = 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class FakeScan:
-    """What the mission reads of a `sim.scanner.Scan`."""
-
-    elevations: NDArray[np.float64]
-    azimuths: NDArray[np.float64]
-    ranges: NDArray[np.float32]
-    minimum_range: float = field(default=1.5)
 
 
 def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> Box:
@@ -86,7 +78,7 @@ def scan(
     noise: float = 0.0,
     seed: int = 0,
     minimum_range: float = 1.5,
-) -> FakeScan:
+) -> Scan:
     """The range image of a full turn, +60 to -40 deg, with range noise [m]."""
     elevations = np.deg2rad(np.arange(60 - step_deg / 2, -40, -step_deg))
     azimuths = np.deg2rad(np.arange(0, 360 - step_deg / 2, step_deg))
@@ -97,7 +89,7 @@ def scan(
         ranges = np.minimum(ranges, _ranges_to(b, world_from_scanner[:3, 3], d))
     ranges += noise * np.random.default_rng(seed).standard_normal(ranges.shape)
     ranges[(ranges < minimum_range) | (ranges > 600)] = np.nan
-    return FakeScan(elevations, azimuths, ranges.astype(np.float32))
+    return Scan(elevations, azimuths, ranges.astype(np.float32), np.zeros(ranges.shape, np.float32), 0.0)
 
 
 def _ranges_to(b: Box, origin: NDArray[np.float64], d: NDArray[np.float64]) -> NDArray[np.float64]:
