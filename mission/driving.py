@@ -1,0 +1,160 @@
+"""Driving along a path until arrival, or until something is in the way; the record of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mission.following import Command, DrivingParameters, eased, follow_path, gap_to_body, remaining, restrained
+from mission.grid import Footprint
+
+if TYPE_CHECKING:
+    from sim.hokuyo import LaserScan
+
+
+class DrivenRobot(Protocol):
+    """What driving needs of a robot."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+
+    @property
+    def odometry(self) -> NDArray[np.float64]:
+        """(4, 4) world_from_base as the wheels count it."""
+
+    def step(self, v: float, w: float, duration: float) -> None:
+        """Hold a speed [m/s] and a turn rate [rad/s] for a time [s]."""
+
+    def contacts(self) -> Sequence[str]:
+        """Names of what the robot touches, the floor apart."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Drive:
+    """A leg as it was driven."""
+
+    planned_path: NDArray[np.float64]
+    """(P, 2) way points in the world [m]."""
+    times: NDArray[np.int64]
+    """(T,) simulated time of each pose [ns]."""
+    world_from_base: NDArray[np.float64]
+    """(T, 4, 4) poses by odometry; the first is the start, the last the end of the leg."""
+    laser_scans: tuple[LaserScan, ...]
+    """Hokuyo scans on the way; the last of them were taken at the end."""
+    world_from_base_at_laser: NDArray[np.float64]
+    """(len(laser_scans), 4, 4) pose at which each was taken."""
+    outcome: Literal["arrived", "blocked", "stuck", "contact"]
+    reason: str
+    """The outcome in words."""
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the robot stands at the end of its path."""
+        return self.outcome == "arrived"
+
+
+def drive(
+    robot: DrivenRobot,
+    path: NDArray[np.float64],
+    measure: Callable[[], Sequence[LaserScan]],
+    *,
+    world_from_odometry: NDArray[np.float64] | None = None,
+    footprint: Footprint | None = None,
+    parameters: DrivingParameters | None = None,
+    watch: Callable[[], None] = lambda: None,
+) -> Drive:
+    """Drive along a path until its end, or until the Hokuyos see the way blocked, or nothing moves any more.
+
+    Args:
+        robot: Is moved.
+        path: (P, 2) way points in the world [m], the robot's position first.
+        measure: Takes a reading of each Hokuyo now.
+        world_from_odometry: (4, 4) correction that the last registration made to the odometry; none by default.
+        watch: Called at each recorded pose, so that the caller can note what else it wants beside it.
+    """
+    parameters, footprint = parameters or DrivingParameters(), footprint or Footprint()
+    correction = np.eye(4) if world_from_odometry is None else world_from_odometry
+    log = _Log(path, correction, watch, parameters.laser_every)
+    command = Command(0.0, 0.0, 1)
+    best, since = np.inf, robot.time
+    while True:
+        pose, scans = log.note(robot, measure())
+        if touched := robot.contacts():
+            return log.closed("contact", f"touched {', '.join(sorted(touched))}")
+        wanted = follow_path(path, pose, target=command.target, parameters=parameters)
+        if wanted.target == len(path):
+            return log.closed("arrived", "reached the end of the path")
+        obstacles = _in_base(scans)
+        allowed = restrained(eased(wanted, command, parameters), obstacles, footprint=footprint, parameters=parameters)
+        if allowed is None:
+            return log.closed(
+                "blocked", f"an obstacle {gap_to_body(obstacles, footprint).min():.2f} m from the body is in the way"
+            )
+        left = remaining(path, pose, wanted.target)
+        if left < best - parameters.progress:
+            best, since = left, robot.time
+        if robot.time - since >= parameters.patience:
+            return log.closed("stuck", f"no progress for {parameters.patience:g} s, {left:.2f} m from the goal")
+        robot.step(allowed.speed, allowed.turn_rate, parameters.tick)
+        command = allowed
+
+
+class _Log:
+    """Gathers what a `Drive` is made of."""
+
+    def __init__(
+        self,
+        path: NDArray[np.float64],
+        world_from_odometry: NDArray[np.float64],
+        watch: Callable[[], None],
+        laser_every: float,
+    ) -> None:
+        self._path, self._world_from_odometry = path, world_from_odometry
+        self._watch, self._laser_every = watch, laser_every
+        self._times: list[int] = []
+        self._poses: list[NDArray[np.float64]] = []
+        self._kept: list[tuple[LaserScan, NDArray[np.float64]]] = []
+        self._now: list[tuple[LaserScan, NDArray[np.float64]]] = []
+        self._next_laser = -np.inf
+
+    def note(self, robot: DrivenRobot, scans: Sequence[LaserScan]) -> tuple[NDArray[np.float64], Sequence[LaserScan]]:
+        """Record this moment; give the pose and the scans back."""
+        pose = self._world_from_odometry @ robot.odometry
+        self._times.append(round(robot.time * 1e9))
+        self._poses.append(pose)
+        self._now = [(scan, pose) for scan in scans]
+        if robot.time >= self._next_laser - 1e-9:
+            self._kept += self._now
+            self._now = []
+            self._next_laser = robot.time + self._laser_every
+        self._watch()
+        return pose, scans
+
+    def closed(self, outcome: Literal["arrived", "blocked", "stuck", "contact"], reason: str) -> Drive:
+        """The record, its last laser scans those of the last moment."""
+        kept = self._kept + self._now
+        return Drive(
+            planned_path=self._path,
+            times=np.array(self._times, dtype=np.int64),
+            world_from_base=np.array(self._poses),
+            laser_scans=tuple(scan for scan, _ in kept),
+            world_from_base_at_laser=np.array([pose for _, pose in kept]).reshape(-1, 4, 4),
+            outcome=outcome,
+            reason=reason,
+        )
+
+
+def _in_base(scans: Sequence[LaserScan]) -> NDArray[np.float64]:
+    """(N, 2) all readings in the base frame [m]."""
+    points = [np.empty((0, 2))]
+    for scan in scans:
+        hit = ~np.isnan(scan.ranges)
+        angles, ranges = scan.angles[hit], scan.ranges[hit].astype(np.float64)
+        in_laser = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=1)
+        points.append(in_laser @ scan.base_from_laser[:2, :2].T + scan.base_from_laser[:2, 3])
+    return np.concatenate(points)

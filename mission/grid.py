@@ -1,0 +1,292 @@
+"""The occupancy grid: where the robot's body fits, as far as scans, Hokuyos and its own track know.
+
+A cell is free only on evidence that the whole column over it is empty up to the robot's height: the scanner saw its
+floor and nothing above it (a beam from above that reaches the floor, and a table top that gives points in the same
+cell). The scanner sees neither floor nor obstacle in a disc around itself (1.19 times its height: its field of view
+ends at -40 deg, and its range starts at 1.5 m); there the Hokuyos speak, whose plane is some 0.4 m high. What
+stands in that disc above or below their plane betrays itself by its shadow on the floor beyond: such sectors stay
+unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+if TYPE_CHECKING:
+    from sim.hokuyo import LaserScan
+
+
+class Cell(IntEnum):
+    """State of a grid cell."""
+
+    UNKNOWN = 0
+    FREE = 1
+    OCCUPIED = 2
+
+
+class GridParameters(BaseModel):
+    """What counts as floor and as obstacle."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    resolution: float = Field(default=0.05, ge=0.02, le=0.2, description="Side of a cell [m]")
+    lowest_obstacle: float = Field(
+        default=0.05, ge=0.02, le=0.15, description="Above the floor [m]: scanner noise is 3-5 mm"
+    )
+    robot_height: float = Field(
+        default=1.6, ge=0.5, le=2.5, description="Top of the camera with some air, above the floor [m]"
+    )
+    reach: float = Field(
+        default=12.0, ge=3.0, le=60.0, description="Points further than this from every scanner are left out [m]"
+    )
+    points_per_obstacle: int = Field(
+        default=3, ge=1, le=50, description="In a cell and its eight neighbours; fewer are mixed returns"
+    )
+    laser_hit_range: float = Field(
+        default=2.5, ge=0.5, le=4.0, description="Hokuyo hits count up to here [m]; 1 % noise beyond blurs walls"
+    )
+    laser_free_range: float = Field(
+        default=2.0,
+        ge=0.5,
+        le=4.0,
+        description="Hokuyo beams clear cells up to here [m]: just past the scanner's blind disc",
+    )
+    lowest_elevation_deg: float = Field(default=-40.0, gt=-90.0, lt=0.0, description="VZ-400: zenith angle 130 deg")
+    min_range: float = Field(default=1.5, ge=0.0, le=5.0, description="VZ-400 [m]")
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """The rectangle that the robot covers, its centre the origin of the base frame."""
+
+    length: float = 1.0
+    """Along x [m]; Guardian on tracks (vendor's navigation footprint)."""
+    width: float = 0.55
+    """Along y [m]."""
+
+    @property
+    def half_diagonal(self) -> float:
+        """Radius of the disc that the robot sweeps when it turns on the spot [m]."""
+        return float(np.hypot(self.length, self.width)) / 2
+
+    def covers(self, points: NDArray[np.floating], *, margin: float = 0.0) -> NDArray[np.bool_]:
+        """(N,) which (N, >=2) points of the base frame lie within the rectangle widened by `margin` [m]."""
+        return (abs(points[:, 0]) <= self.length / 2 + margin) & (abs(points[:, 1]) <= self.width / 2 + margin)
+
+
+@dataclass(frozen=True, eq=False)
+class OccupancyGrid:
+    """A map of the floor in square cells along the world's axes."""
+
+    origin: NDArray[np.float64]
+    """(2,) lower left corner of cell (0, 0) in the world [m]."""
+    resolution: float
+    """Side of a cell [m]."""
+    cells: NDArray[np.uint8]
+    """(rows, columns) `Cell`; row 0 lies at origin y, columns run along x."""
+
+    @cached_property
+    def clearance(self) -> NDArray[np.float32]:
+        """(rows, columns) distance from a cell's centre to the nearest cell that is not free [m], 0 where not free."""
+        return self._distance(self.cells != Cell.FREE)
+
+    @cached_property
+    def obstacle_clearance(self) -> NDArray[np.float32]:
+        """(rows, columns) distance from a cell's centre to the nearest occupied cell or the grid's edge [m]."""
+        return self._distance(self.cells == Cell.OCCUPIED)
+
+    def _distance(self, blocked: NDArray[np.bool_]) -> NDArray[np.float32]:
+        """Distance from centre to centre, less half a cell for the obstacle's side; beyond the edge all is blocked."""
+        padded = np.pad((~blocked).astype(np.uint8), 1)
+        distance = cv2.distanceTransform(padded, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
+        return np.maximum(distance - 0.5, 0.0).astype(np.float32) * np.float32(self.resolution)
+
+    def centres(self) -> NDArray[np.float64]:
+        """(rows, columns, 2) centres of all cells in the world [m]."""
+        rows, columns = self.cells.shape
+        x = self.origin[0] + (np.arange(columns) + 0.5) * self.resolution
+        y = self.origin[1] + (np.arange(rows) + 0.5) * self.resolution
+        return np.stack(np.meshgrid(x, y), axis=-1)
+
+    def indices(
+        self, points_in_world: NDArray[np.floating]
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.bool_]]:
+        """Row, column and whether inside the grid, each (...), of (..., >=2) points; outside, row and column are 0."""
+        cell = np.floor((points_in_world[..., :2] - self.origin) / self.resolution)
+        rows, columns = self.cells.shape
+        inside = (cell >= 0).all(axis=-1) & (cell[..., 1] < rows) & (cell[..., 0] < columns)
+        index = np.where(inside[..., None], cell, 0).astype(np.intp)
+        return index[..., 1], index[..., 0], inside
+
+    def states(self, points_in_world: NDArray[np.floating]) -> NDArray[np.uint8]:
+        """(...) `Cell` at (..., >=2) points of the world; unknown outside the grid."""
+        row, column, inside = self.indices(points_in_world)
+        return np.where(inside, self.cells[row, column], np.uint8(Cell.UNKNOWN))
+
+    def clearance_at(self, points_in_world: NDArray[np.floating]) -> NDArray[np.float32]:
+        """(...) clearance at (..., 2) points, bilinear between the cells' centres [m]; 0 outside the grid."""
+        at = ((points_in_world[..., :2] - self.origin) / self.resolution - 0.5).astype(np.float32)
+        flat = at.reshape(1, -1, 2)
+        looked_up = [
+            cv2.remap(self.clearance, chunk[..., 0], chunk[..., 1], cv2.INTER_LINEAR, borderValue=0.0)
+            for chunk in np.array_split(flat, range(_REMAP_LIMIT, flat.shape[1], _REMAP_LIMIT), axis=1)
+        ]
+        return np.concatenate(looked_up, axis=1, dtype=np.float32).reshape(at.shape[:-1])
+
+
+_REMAP_LIMIT = 32_000
+"""cv2.remap addresses its maps with 16 bit."""
+
+
+def grid_from_scans(
+    points_in_world: NDArray[np.floating],
+    scanners_in_world: NDArray[np.floating],
+    *,
+    floor_height: float,
+    lasers: Sequence[tuple[LaserScan, NDArray[np.float64]]] = (),
+    robot_poses: Sequence[NDArray[np.float64]] = (),
+    footprint: Footprint | None = None,
+    parameters: GridParameters | None = None,
+) -> OccupancyGrid:
+    """Map the floor from all that was measured so far.
+
+    Occupied wins over free, except under the robot itself: where it stood, nothing else can have been.
+
+    Args:
+        points_in_world: (N, 3) points of all scans, thinned to 3 cm or denser [m].
+        scanners_in_world: (S, 3) origins of the beams [m], S >= 1.
+        floor_height: World z of the floor [m].
+        lasers: Hokuyo scans, each with the (4, 4) world_from_base at which it was taken.
+        robot_poses: (4, 4) world_from_base at which the robot has stood.
+        footprint: What the robot covers there.
+    """
+    parameters = parameters or GridParameters()
+    points = _within_reach(np.asarray(points_in_world), scanners_in_world, floor_height, parameters)
+    grid = _empty_grid(points, scanners_in_world, parameters)
+    height = points[:, 2] - floor_height
+    floor = _count(grid, points[abs(height) < parameters.lowest_obstacle]) > 0
+    hits = _count(grid, points[height >= parameters.lowest_obstacle])
+    around = cv2.boxFilter(hits.astype(np.float32), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
+    occupied = (hits > 0) & (around > parameters.points_per_obstacle - 0.5)
+    # Between scan lines and in the shadow of a table leg lie gaps of a cell or two.
+    closed = cv2.morphologyEx(floor.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8)) > 0
+    seen = np.where(occupied, Cell.OCCUPIED, np.where(closed, Cell.FREE, Cell.UNKNOWN)).astype(np.uint8)
+    grid = replace(grid, cells=seen)
+    for scan, world_from_base in lasers:
+        grid = with_laser(grid, scan, world_from_base, parameters=parameters)
+    cells = grid.cells.copy()
+    for scanner in np.asarray(scanners_in_world, dtype=np.float64):
+        cells[_shadowed(grid, closed, scanner, floor_height, parameters) & (cells == Cell.FREE)] = Cell.UNKNOWN
+    for world_from_base in robot_poses:
+        cells[_under(grid, footprint or Footprint(), world_from_base)] = Cell.FREE
+    return replace(grid, cells=cells)
+
+
+def with_laser(
+    grid: OccupancyGrid,
+    scan: LaserScan,
+    world_from_base: NDArray[np.float64],
+    *,
+    parameters: GridParameters | None = None,
+) -> OccupancyGrid:
+    """Add one Hokuyo scan: hits become occupied, unknown cells that beams crossed become free.
+
+    Occupied cells stay so, whatever crosses them at the Hokuyo's height: they may block above or below it.
+    """
+    parameters = parameters or GridParameters()
+    world_from_laser = world_from_base @ scan.base_from_laser
+    ranges = np.where(np.isnan(scan.ranges), np.inf, scan.ranges)
+    near = ranges <= parameters.laser_hit_range
+    angles, radii = scan.angles[near], ranges[near]
+    hits_in_laser = np.stack([radii * np.cos(angles), radii * np.sin(angles), np.zeros_like(radii)], axis=1)
+    hits_in_world = hits_in_laser @ world_from_laser[:3, :3].T + world_from_laser[:3, 3]
+
+    centres = grid.centres().reshape(-1, 2)
+    offsets = np.column_stack([centres, np.full(len(centres), world_from_laser[2, 3])]) - world_from_laser[:3, 3]
+    close = np.hypot(offsets[:, 0], offsets[:, 1]) <= parameters.laser_free_range
+    in_laser = offsets[close] @ world_from_laser[:3, :3]
+    bearing = np.arctan2(in_laser[:, 1], in_laser[:, 0])
+    beam = np.rint(np.interp(bearing, scan.angles, np.arange(len(ranges)))).astype(np.intp)
+    crossed = np.hypot(in_laser[:, 0], in_laser[:, 1]) < ranges[beam] - grid.resolution
+    crossed &= (bearing >= scan.angles[0]) & (bearing <= scan.angles[-1])
+
+    cells = grid.cells.copy()
+    flat = cells.reshape(-1)
+    free = np.flatnonzero(close)[crossed]
+    flat[free[flat[free] == Cell.UNKNOWN]] = Cell.FREE
+    row, column, inside = grid.indices(hits_in_world)
+    cells[row[inside], column[inside]] = Cell.OCCUPIED
+    return replace(grid, cells=cells)
+
+
+def _within_reach(
+    points: NDArray[np.floating], scanners: NDArray[np.floating], floor_height: float, parameters: GridParameters
+) -> NDArray[np.floating]:
+    """Points between just under the floor and the robot's top, not too far from some scanner."""
+    height = points[:, 2] - floor_height
+    points = points[(height > -parameters.lowest_obstacle) & (height < parameters.robot_height)]
+    near = np.zeros(len(points), dtype=np.bool_)
+    for scanner in scanners:
+        near |= ((points[:, :2] - scanner[:2]) ** 2).sum(axis=1) < parameters.reach**2
+    return points[near]
+
+
+def _empty_grid(
+    points: NDArray[np.floating], scanners: NDArray[np.floating], parameters: GridParameters
+) -> OccupancyGrid:
+    """An unknown grid over the points and two metres around each scanner."""
+    corners = np.concatenate([points[:, :2], scanners[:, :2] - 2.0, scanners[:, :2] + 2.0]).astype(np.float64)
+    first = np.floor(corners.min(axis=0) / parameters.resolution)
+    columns, rows = (np.floor(corners.max(axis=0) / parameters.resolution) - first + 1).astype(int)
+    cells = np.zeros((rows, columns), dtype=np.uint8)
+    return OccupancyGrid(origin=first * parameters.resolution, resolution=parameters.resolution, cells=cells)
+
+
+def _count(grid: OccupancyGrid, points: NDArray[np.floating]) -> NDArray[np.intp]:
+    row, column, inside = grid.indices(points)
+    flat = (row * grid.cells.shape[1] + column)[inside]
+    return np.bincount(flat, minlength=grid.cells.size).reshape(grid.cells.shape)
+
+
+def _shadowed(
+    grid: OccupancyGrid,
+    floor: NDArray[np.bool_],
+    scanner: NDArray[np.float64],
+    floor_height: float,
+    parameters: GridParameters,
+) -> NDArray[np.bool_]:
+    """(rows, columns) cells of the scanner's blind disc in whose direction the floor beyond is missing unexplained.
+
+    Something nearer than the minimum range swallowed those beams, and no known obstacle accounts for it.
+    """
+    height = scanner[2] - floor_height
+    blind = height / np.tan(-np.radians(parameters.lowest_elevation_deg))
+    blind = float(max(blind, np.sqrt(max(parameters.min_range**2 - height**2, 0.0))))
+    azimuths = np.radians(np.arange(0, 360, 2) + 1.0)
+    radii = np.arange(grid.resolution, blind + 0.4, grid.resolution)
+    rays = scanner[:2] + radii[None, :, None] * np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)[:, None]
+    row, column, inside = grid.indices(rays)
+    explained = (inside & (grid.cells[row, column] == Cell.OCCUPIED)).any(axis=1)
+    beyond = radii > blind - 0.1
+    lit = (inside & floor[row, column])[:, beyond].any(axis=1)
+    suspect = ~explained & ~lit
+
+    offsets = grid.centres() - scanner[:2]
+    azimuth = np.arctan2(offsets[..., 1], offsets[..., 0]) % (2 * np.pi)
+    sector = np.minimum((azimuth / np.radians(2)).astype(np.intp), len(azimuths) - 1)
+    return (np.hypot(offsets[..., 0], offsets[..., 1]) < blind) & suspect[sector] & ~floor
+
+
+def _under(grid: OccupancyGrid, footprint: Footprint, world_from_base: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(rows, columns) cells whose centre lies under the robot."""
+    in_base = (grid.centres().reshape(-1, 2) - world_from_base[:2, 3]) @ world_from_base[:2, :2]
+    return footprint.covers(in_base).reshape(grid.cells.shape)
