@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from sim.render import Renderer, View
+from sim.render import Renderer, View, looking_along
 from sim.render.jumps import blocks_across_jumps
 from sim.render.materials import materials_of
 
@@ -188,11 +188,7 @@ class _Wedge:
     """(E, columns) flat index of the lower left of the four pixels round the beam."""
 
     def view(self, world_from_scanner: NDArray[np.float64], number: int) -> View:
-        azimuth = self.azimuth + number * 2 * np.pi / _WEDGES
-        cos, sin = np.cos(azimuth), np.sin(azimuth)
-        scanner_from_view = np.eye(4)
-        scanner_from_view[:3, :3] = [[sin, 0, cos], [-cos, 0, sin], [0, -1, 0]]  # OpenCV: x right, y down, z forward
-        pose = world_from_scanner @ scanner_from_view
+        pose = world_from_scanner @ looking_along(self.azimuth + number * 2 * np.pi / _WEDGES)
         return View(pose, -self.half_width, self.half_width, self.bottom, self.top, self.width, self.height)
 
     def sample(self, raw: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -14,29 +14,13 @@ from numpy.typing import NDArray
 
 from sim.errors import SimError
 from sim.render.context import make_context
+from sim.render.view import View
 from sim.render.visibility import SHOWN, effective_rgba, showing, visible_geoms
 
 _QUALITY = {"numslices": 96, "numstacks": 32, "numquads": 1, "offsamples": 0, "shadowsize": 0}
 """Tessellation: 96 sides leave 0.05 % of the radius between a drawn cylinder and a true one. No multisampling: depth
 and segments must not be blended."""
 _MAX_SEGMENTS = 2**16 - 2
-
-
-@dataclass(frozen=True, eq=False)
-class View:
-    """A pinhole picture to be rendered: where from, through which window, how many pixels."""
-
-    world_from_view: NDArray[np.float64]
-    """(4, 4) pose with OpenCV's axes: x right, y down, z forward."""
-    left: float
-    """Edges of the window at unit distance, so tangents; `bottom < top`, up being -y."""
-    right: float
-    bottom: float
-    top: float
-    width: int
-    """[px]"""
-    height: int
-    """[px]"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +100,11 @@ class Renderer:
         return Depth(raw, low_high.view("<u2")[..., 0], geom_ids)
 
     def albedo(self, data: mujoco.MjData, view: View) -> NDArray[np.uint8]:
-        """Renders texture x rgba without any light: (height, width, 3) sRGB, bottom row first, black where nothing is."""
+        """Renders texture x rgba without any light.
+
+        Returns:
+            (height, width, 3) sRGB, bottom row first; black where there is nothing.
+        """
         self._compose(data, view)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = 0
         self._only_ambient_light()

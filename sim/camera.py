@@ -1,0 +1,206 @@
+"""The Nikon D90 with its built-in flash, on top of the scanner: photographs of a full turn."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import cv2
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from sim.render import Depth, Renderer, View, looking_along
+from sim.render.materials import linear_from_srgb, materials_of, srgb_from_linear
+from sim.shading import Gloss, Image, Light, Window, flash_light, seen_from_flash
+
+SENSOR = 0.0158, 0.0236
+"""Width and height of the sensor, upright [m] (manual, p. 248)."""
+FULL_WELL = 20_900.0
+"""Electrons at full scale, ISO 200 (photonstophotos.net, same sensor)."""
+READ_NOISE = 11.0
+"""Electrons, one sigma, ISO 200."""
+GUIDE_NUMBER = 17.0
+"""Aperture x distance of a right exposure by the built-in flash at full power, ISO 200 [m]."""
+APERTURES = 2.8, 22.0
+"""Widest and narrowest aperture of the 14 mm lens."""
+FLASH = -0.09, 0.0
+"""Flash right of and above the lens [m]: held upright, the camera has its flash at the left side."""
+BRIGHT_SHARE, BRIGHT_LEVEL = 0.98, 0.9
+"""The turn is exposed so that this share of what it shows is matt light below this part of full scale."""
+AMBIENT_DISTANCE = 3.0
+"""Distance of the flash that ambient light is measured against [m]."""
+
+_NEAREST = 0.3
+"""Nearest surface that the flash's view covers up to the edge of the picture [m]."""
+_LUMINANCE = np.float32([0.2126, 0.7152, 0.0722])
+_LEVELS = 2**12
+"""Of the analogue-digital converter."""
+
+
+class CameraParameters(BaseModel):
+    """How the camera is used."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    width: int = Field(712, ge=16, le=2848, description="Picture width, upright [px]; the D90 has 2848.")
+    height: int = Field(1072, ge=16, le=4288, description="Picture height [px]; the D90 has 4288.")
+    shots: int = Field(10, ge=7, le=36, description="Photographs a turn: 7 overlap by 10 %, 10 by 39 %.")
+    focal_length: float = Field(0.014, ge=0.010, le=0.085, description="[m]")
+    rise: float = Field(0.20, ge=0, le=1, description="Camera centre above the scanner's beams, on its axis [m].")
+    ambient: float = Field(0.5, ge=0, description="Light in the room, relative to the flash's at 3 m.")
+    noise: bool = Field(True, description="Photon and read noise.")
+    highlight_level: float = Field(0.05, gt=0, description="Gloss, in parts of full scale, that counts as a highlight.")
+
+    @property
+    def focal_px(self) -> tuple[float, float]:
+        """Focal length over the pixel pitch, horizontally and vertically [px]."""
+        return self.focal_length / SENSOR[0] * self.width, self.focal_length / SENSOR[1] * self.height
+
+
+@dataclass(frozen=True, eq=False)
+class Photo:
+    """One photograph, with the calibration that a user of the camera knows."""
+
+    image: NDArray[np.uint8]
+    """(H, W, 3) sRGB, top row first."""
+    intrinsics: NDArray[np.float64]
+    """(3, 3) pinhole matrix [px] in OpenCV's axes: x right, y down, z forward; the centre of the first pixel is at
+    (0.5, 0.5)."""
+    scanner_from_camera: NDArray[np.float64]
+    """(4, 4) pose of the camera in the scanner's frame at this shot."""
+    true_highlights: NDArray[np.bool_]
+    """(H, W) where the flash's gloss shows. Truth, for tests and benchmarks only."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Exposure:
+    """What falls on the sensor for a flash of one unit; bottom row first."""
+
+    albedo: Image
+    """(H, W, 3) linear"""
+    light: Light
+    """Of flash and room."""
+
+
+class Camera:
+    """A D90 in one world.
+
+    Glass is let through, like everything less than half opaque. Vignetting counts as corrected by the raw converter.
+    """
+
+    def __init__(self, renderer: Renderer, parameters: CameraParameters | None = None) -> None:
+        """Takes a camera into use.
+
+        Args:
+            renderer: of the world; what it hides, the camera does not see.
+            parameters: how to photograph.
+        """
+        self.parameters = parameters or CameraParameters()
+        self._renderer = renderer
+        self._materials = materials_of(renderer.model)
+        self._window = _window(self.parameters)
+
+    def photograph(
+        self, data: mujoco.MjData, world_from_scanner: NDArray[np.float64], rng: np.random.Generator
+    ) -> tuple[Photo, ...]:
+        """Photographs once all round, anticlockwise from the scanner's x axis, all with one exposure.
+
+        Args:
+            data: state of the world.
+            world_from_scanner: (4, 4) true pose of the scanner under the camera.
+            rng: source of the sensor noise.
+        """
+        shots = self.parameters.shots
+        seeds = rng.integers(2**63, size=shots)
+        poses = [self._scanner_from_camera(2 * np.pi * k / shots) for k in range(shots)]
+        with ThreadPoolExecutor(os.cpu_count()) as pool:  # shading goes on while the next shot is rendered
+            pending = [pool.submit(self._shade, *self._render(data, world_from_scanner @ pose)) for pose in poses]
+            exposed = [shot.result() for shot in pending]
+            gain = _gain(exposed)
+            return tuple(pool.map(lambda k: self._develop(exposed[k], gain, poses[k], int(seeds[k])), range(shots)))
+
+    def _scanner_from_camera(self, azimuth: float) -> NDArray[np.float64]:
+        pose = looking_along(azimuth)
+        pose[2, 3] = self.parameters.rise
+        return pose
+
+    def _render(
+        self, data: mujoco.MjData, world_from_camera: NDArray[np.float64]
+    ) -> tuple[NDArray[np.uint8], Depth, Depth]:
+        """Albedo and depth from the lens, and depth from the flash through a window wider by the margin."""
+        lens = self._view(world_from_camera, margin=0)
+        world_from_flash = world_from_camera.copy()
+        world_from_flash[:3, 3] += world_from_camera[:3, :3] @ [FLASH[0], -FLASH[1], 0]  # OpenCV's y is down
+        flash = self._view(world_from_flash, margin=self._margin)
+        renderer = self._renderer
+        return renderer.albedo(data, lens), renderer.depth(data, lens), renderer.depth(data, flash)
+
+    def _view(self, world_from_view: NDArray[np.float64], margin: int) -> View:
+        width, height = self.parameters.width + 2 * margin, self.parameters.height + 2 * margin
+        focal_x, focal_y = self.parameters.focal_px
+        across, up = width / 2 / focal_x, height / 2 / focal_y
+        return View(world_from_view, -across, across, -up, up, width, height)
+
+    @property
+    def _margin(self) -> int:
+        """Parallax between lens and flash at the nearest surface [px]."""
+        return int(np.ceil(max(self.parameters.focal_px) * max(map(abs, FLASH)) / _NEAREST))
+
+    def _shade(self, albedo: NDArray[np.uint8], lens: Depth, flash: Depth) -> _Exposure:
+        """Lights a rendered shot; pixel by pixel, so that it can be done in any thread."""
+        renderer, window = self._renderer, self._window
+        scale, offset = np.float32(renderer.inverse_depth_scale), np.float32(renderer.inverse_depth_offset)
+        inverse_depth = lens.raw * scale + offset
+        seen = seen_from_flash(inverse_depth, flash.raw * scale + offset, FLASH, window, self._margin)
+        gloss = Gloss(
+            self._materials.specular[lens.geom_ids][lens.segments],
+            self._materials.exponent[lens.geom_ids][lens.segments],
+        )
+        light = flash_light(inverse_depth, seen, FLASH, window, gloss)
+        light.diffuse[...] += np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
+        return _Exposure(cv2.LUT(albedo, _LINEAR), light)
+
+    def _develop(self, exposed: _Exposure, gain: float, scanner_from_camera: NDArray[np.float64], seed: int) -> Photo:
+        """Sensor and raw converter: photons, noise, clipping, 12 bit, sRGB."""
+        signal = exposed.albedo * exposed.light.diffuse[..., None] + exposed.light.gloss[..., None]
+        signal *= np.float32(gain)
+        if self.parameters.noise:  # photon noise of more than a few electrons is normal
+            sigma = np.sqrt(signal * np.float32(1 / FULL_WELL) + np.float32((READ_NOISE / FULL_WELL) ** 2))
+            sigma *= np.random.default_rng(seed).standard_normal(signal.shape, np.float32)
+            signal += sigma
+        np.clip(signal, 0, 1, out=signal)
+        image = _SRGB[np.rint(signal * np.float32(_LEVELS - 1)).astype(np.uint16)]
+        highlights = exposed.light.gloss * np.float32(gain) > self.parameters.highlight_level
+        focal_x, focal_y = self.parameters.focal_px
+        height, width = highlights.shape
+        intrinsics = np.array([[focal_x, 0, width / 2], [0, focal_y, height / 2], [0, 0, 1]])
+        # OpenGL's bottom row first to OpenCV's top row first
+        return Photo(image[::-1].copy(), intrinsics, scanner_from_camera, highlights[::-1].copy())
+
+
+def _window(parameters: CameraParameters) -> Window:
+    focal_x, focal_y = parameters.focal_px
+    across = (np.arange(parameters.width) + 0.5 - parameters.width / 2) / focal_x
+    up = (np.arange(parameters.height) + 0.5 - parameters.height / 2) / focal_y
+    return Window(focal_x, focal_y, across.astype(np.float32)[None], up.astype(np.float32)[:, None])
+
+
+def _gain(shots: list[_Exposure]) -> float:
+    """Part of full scale that a white surface square to the full flash at 1 m would fill: (guide number / aperture)^2.
+
+    Colours of several photographs are merged, so all shots of a turn share it. The light of the gloss is left out: it
+    may clip, as in life.
+    """
+    samples = [(shot.albedo[::8, ::8] @ _LUMINANCE) * shot.light.diffuse[::8, ::8] for shot in shots]
+    brightness = np.concatenate([sample[sample > 0] for sample in samples])
+    lowest, highest = ((GUIDE_NUMBER / aperture) ** 2 for aperture in reversed(APERTURES))
+    if not len(brightness):
+        return highest
+    return float(np.clip(BRIGHT_LEVEL / np.quantile(brightness, BRIGHT_SHARE), lowest, highest))
+
+
+_LINEAR = linear_from_srgb(np.arange(256) / 255).astype(np.float32)
+_SRGB = np.rint(255 * srgb_from_linear(np.arange(_LEVELS) / (_LEVELS - 1))).astype(np.uint8)

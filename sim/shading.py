@@ -1,0 +1,127 @@
+"""How a flash lights what a pinhole sees: per pixel, from depth and material alone.
+
+All arrays are pictures with the bottom row first. Vectors are in view axes: x right, y up, z forward.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Image = NDArray[np.float32]
+
+_SHADOW_BIAS = 3e-3
+"""Depth by which something must be nearer to the flash to throw a shadow, relative."""
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """Where the pixels of a pinhole picture look."""
+
+    focal_x: float
+    """[px]"""
+    focal_y: float
+    """[px]"""
+    across: Image
+    """(1, W) tangent of each pixel centre to the right."""
+    up: Image
+    """(H, 1) tangent of each pixel centre upward."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gloss:
+    """How shiny the surface in each pixel is."""
+
+    height: Image
+    """(H, W) height of the Blinn-Phong lobe, relative to a white diffuser."""
+    exponent: Image
+    """(H, W)"""
+
+
+@dataclass(frozen=True, eq=False)
+class Light:
+    """What reaches the camera for a flash of one unit: light 1 on a surface square to it at 1 m."""
+
+    diffuse: Image
+    """(H, W) irradiance; times the albedo it is what a matt surface sends back."""
+    gloss: Image
+    """(H, W) light of the gloss lobe."""
+
+
+def flash_light(
+    inverse_depth: Image, seen_by_flash: Image, flash: tuple[float, float], window: Window, gloss: Gloss
+) -> Light:
+    """Lights a picture by a point flash beside the lens.
+
+    Inverse square, Lambert's cosine, Blinn-Phong lobe, hard shadow.
+
+    Args:
+        inverse_depth: (H, W) 1/z at the pixel centres [1/m]; nearly 0 where there is nothing.
+        seen_by_flash: (H, W) `seen_from_flash` of the same pixels.
+        flash: its position right of and above the lens [m].
+        window: of the picture.
+        gloss: of the surfaces.
+    """
+    x, y, z = _normals(inverse_depth, window)
+    to_flash = (flash[0] * inverse_depth - window.across, flash[1] * inverse_depth - window.up)  # times depth; z is -1
+    reach2 = to_flash[0] ** 2 + to_flash[1] ** 2 + 1
+    reach = np.sqrt(reach2)
+    cosine = np.maximum((x * to_flash[0] + y * to_flash[1] - z) / reach, 0)
+    irradiance = inverse_depth**2 / reach2
+    irradiance *= seen_by_flash
+    away = np.sqrt(window.across**2 + window.up**2 + 1)  # the ray from the lens, likewise
+    half = (to_flash[0] / reach - window.across / away, to_flash[1] / reach - window.up / away, -1 / reach - 1 / away)
+    half_cosine = (x * half[0] + y * half[1] + z * half[2]) / np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
+    lobe = np.exp(gloss.exponent * np.log(np.clip(half_cosine, 1e-6, 1)))
+    lobe *= gloss.height
+    lobe *= irradiance
+    lobe[cosine <= 0] = 0
+    return Light(diffuse=irradiance * cosine, gloss=lobe)
+
+
+def seen_from_flash(
+    inverse_depth: Image, flash_inverse_depth: Image, flash: tuple[float, float], window: Window, margin: int
+) -> Image:
+    """(H, W) 1 where the flash reaches the surface, 0 in its shadow.
+
+    Args:
+        inverse_depth: (H, W) 1/z from the lens [1/m].
+        flash_inverse_depth: (H + 2 margin, W + 2 margin) 1/z from the flash, looking the same way through a window
+            that is wider by the margin [1/m].
+        flash: position of the flash right of and above the lens [m].
+        window: of the picture from the lens.
+        margin: [px]
+    """
+    height, width = inverse_depth.shape
+    # From the flash, which looks the same way, a point has the same depth and is shifted by the parallax.
+    column = np.arange(width, dtype=np.float32) + np.float32(margin)
+    row = np.arange(height, dtype=np.float32)[:, None] + np.float32(margin)
+    map_x = column - np.float32(window.focal_x * flash[0]) * inverse_depth
+    map_y = row - np.float32(window.focal_y * flash[1]) * inverse_depth
+    nearest = cv2.remap(flash_inverse_depth, map_x, map_y, cv2.INTER_LINEAR)
+    return (nearest <= inverse_depth * np.float32(1 + _SHADOW_BIAS)).astype(np.float32)
+
+
+def _normals(inverse_depth: Image, window: Window) -> tuple[Image, Image, Image]:
+    """Unit normals towards the lens, three (H, W) components.
+
+    Over a plane 1/z is linear in the tangents (u, v); its gradient there and its value at u = v = 0 are the plane's
+    normal divided by its distance.
+    """
+    to_right = _slope(inverse_depth, axis=1) * np.float32(window.focal_x)
+    upward = _slope(inverse_depth, axis=0) * np.float32(window.focal_y)
+    ahead = inverse_depth - window.across * to_right - window.up * upward
+    length = -np.sqrt(to_right**2 + upward**2 + ahead**2)
+    return to_right / length, upward / length, ahead / length
+
+
+def _slope(picture: Image, axis: int) -> Image:
+    """(H, W) change per pixel; of the steps on both sides the smaller one, which does not cross an edge."""
+    steps = np.diff(picture, axis=axis)
+    first, last = (steps[:1], steps[-1:]) if axis == 0 else (steps[:, :1], steps[:, -1:])
+    before = np.concatenate([first, steps], axis=axis)
+    after = np.concatenate([steps, last], axis=axis)
+    return np.where(np.abs(before) < np.abs(after), before, after)
