@@ -1,0 +1,1 @@
+"""Recordings of a mission: the only package that knows Rerun and MCAP."""

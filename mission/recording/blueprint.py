@@ -1,0 +1,165 @@
+"""How a Rerun recording opens: a tab for the mission, one a wall with doors, one for the results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import rerun.blueprint as rrb
+from numpy.typing import NDArray
+
+from mission.recording import entities
+
+
+@dataclass(frozen=True)
+class WallTab:
+    """What the tab of a wall needs to know."""
+
+    name: str
+    """ "1.2" for the second wall of room 1."""
+    views: int
+    """How many scans saw it."""
+    first_view: int
+    """The one to open."""
+    has_doors: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Outlook:
+    """Where the eye of the 3D view stands and looks."""
+
+    eye: NDArray[np.float64]
+    """(3,) in the world [m]."""
+    target: NDArray[np.float64]
+    """(3,) in the world [m]."""
+
+
+_BARS = rrb.VisualBounds2D(x_range=(-10, 110), y_range=(-10, 120))
+
+
+def outlook(points: NDArray[np.float64]) -> Outlook:
+    """Look down at an angle on what spans some points (N, 3) of the world."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    target = (low + high) / 2
+    size = max(float(np.linalg.norm(high[:2] - low[:2])), 4.0)
+    return Outlook(target + size * np.array([-0.25, -0.55, 0.8]), target)
+
+
+def blueprint(view: Outlook, walls: Sequence[WallTab] = ()) -> rrb.Blueprint:
+    """The layout of the whole recording; walls without doors are there, but folded away."""
+    tabs = [_mission(view), *(_wall(wall) for wall in walls), _results()]
+    return rrb.Blueprint(
+        rrb.Tabs(*tabs, active_tab=0),
+        rrb.TimePanel(timeline="step", play_state="following", state="collapsed"),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        auto_views=False,
+        auto_layout=False,
+    )
+
+
+def _mission(view: Outlook) -> rrb.Container:
+    hidden = rrb.EntityBehavior(visible=False)
+    world = rrb.Spatial3DView(
+        origin=entities.WORLD,
+        contents=["$origin/**", f"- {entities.SHOTS}/**"],
+        overrides={entity: hidden for entity in (entities.CEILINGS, entities.VOXELS, entities.CLUTTER, entities.GRID)},
+        eye_controls=rrb.EyeControls3D(position=view.eye, look_target=view.target, eye_up=(0, 0, 1)),
+        name="Room",
+    )
+    photo = rrb.Spatial2DView(
+        origin=entities.CAMERA, contents=["$origin/**", f"{entities.DOORS}/**"], name="Photograph"
+    )
+    side = rrb.Vertical(photo, _scatter())
+    lanes = rrb.StateTimelineView(origin=entities.STATES, name="What the mission does")
+    above = rrb.Horizontal(world, side, column_shares=[5, 2])
+    below = rrb.Horizontal(lanes, _log(), column_shares=[5, 4])
+    return rrb.Vertical(above, below, row_shares=[3, 1], name="Mission")
+
+
+def _wall(wall: WallTab) -> rrb.Container:
+    """The paper's stages from left to right, top to bottom."""
+    root = entities.stages(wall.name)
+    merged = f"+ {root}/merged/colour"
+    views = rrb.Tabs(*(_view(root, number) for number in range(wall.views)), active_tab=wall.first_view)
+    cells = [
+        _image("Merged (4.2) and the doors found", root, merged, f"+ {root}/merged/doors/**"),
+        _image("Depth from the wall plane, -15 to 15 cm", root, f"+ {root}/merged/depth"),
+        rrb.Tabs(
+            _image("Openings (5)", root, f"+ {root}/openings/**", f"- {root}/openings/visibility"),
+            _image("What the beams met", root, f"+ {root}/openings/visibility"),
+            active_tab=0,
+        ),
+        _image("Wall area (6.1): clusters of seeds", root, f"+ {root}/wall_area/clusters", f"+ {root}/wall_area/seeds"),
+        _image("Wall area (6.1): on the wall", root, merged, f"+ {root}/wall_area/mask"),
+        _image("Edges (6.2): colour, depth, both", root, f"+ {root}/edges/**"),
+        _image("Candidates (6.2): accepted, rejected by", root, merged, f"+ {root}/candidates/**"),
+        _photograph(wall),
+    ]
+    stages = rrb.Grid(*cells, grid_columns=2)
+    return rrb.Horizontal(views, stages, column_shares=[1, 2], name=f"Wall {wall.name}", visible=wall.has_doors)
+
+
+def _view(root: str, number: int) -> rrb.Container:
+    """Section 4 for one scan."""
+    view = f"{root}/view/{number}"
+    return rrb.Vertical(
+        _image("Seen", root, f"+ {view}/colour"),
+        _image("Highlights (4.1)", root, f"+ {view}/colour", f"+ {view}/highlights/**"),
+        _image("Inpainted (4.2)", root, f"+ {view}/inpainted"),
+        name=f"View {number + 1}",
+    )
+
+
+def _photograph(wall: WallTab) -> rrb.View:
+    return rrb.Spatial2DView(
+        origin=f"{entities.SHOTS}/{wall.name}",
+        contents=["$origin/**", f"{entities.DOORS}/**"],
+        name="Photograph with the doors",
+    )
+
+
+def _image(name: str, root: str, *contents: str) -> rrb.View:
+    return rrb.Spatial2DView(origin=root, contents=list(contents), name=name)
+
+
+def _results() -> rrb.Container:
+    summary = rrb.TextDocumentView(origin=entities.SUMMARY, name="Summary")
+    configuration = rrb.TextDocumentView(origin=entities.CONFIGURATION, name="Configuration")
+    figures = rrb.Grid(
+        rrb.Spatial2DView(origin=entities.ERRORS, name="Angle error", visual_bounds=_BARS),
+        rrb.Spatial2DView(origin=entities.STAGES, name="Detector: time per stage (wall clock)", visual_bounds=_BARS),
+        _percent(),
+        rrb.TimeSeriesView(
+            origin=entities.ANGLES,
+            name="Opening angles [deg]: joints and estimates",
+            axis_y=rrb.ScalarAxis(range=(-5, 110)),
+            plot_legend=rrb.PlotLegend("LeftTop"),
+        ),
+        grid_columns=2,
+    )
+    return rrb.Horizontal(
+        summary,
+        figures,
+        configuration,
+        column_shares=[4, 5, 2],
+        name="Results",
+    )
+
+
+def _scatter() -> rrb.View:
+    return rrb.Spatial2DView(
+        origin=entities.SCATTER,
+        name="Opening angle: estimate against joint",
+        visual_bounds=rrb.VisualBounds2D(x_range=(-40, 140), y_range=(-120, 28)),
+    )
+
+
+def _percent() -> rrb.View:
+    return rrb.TimeSeriesView(origin=entities.COVERAGE, name="Coverage [%]", axis_y=rrb.ScalarAxis(range=(0, 105)))
+
+
+def _log() -> rrb.View:
+    columns = rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])
+    return rrb.TextLogView(origin=entities.LOG, name="Log", columns=columns)

@@ -1,0 +1,164 @@
+"""What both recordings draw alike: display clouds, colours, outlines and labels; knows no log format."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Protocol
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from mission.evaluation import DoorEvaluation
+
+GRID = 512.0
+"""Recorded coordinates are multiples of 1/512 m: at most 1 mm off per axis (0.6 mm rms), a fifth of the scanner's
+own noise, and it halves the size of a compressed cloud."""
+
+UNCOLOURED = (150, 150, 150)
+"""Colour of points that no photograph sees."""
+
+PALETTE = (
+    (239, 131, 57),
+    (66, 146, 224),
+    (86, 178, 92),
+    (200, 92, 200),
+    (230, 196, 60),
+    (78, 196, 196),
+    (222, 84, 96),
+    (150, 120, 220),
+)
+"""Colours that tell doors apart."""
+
+JPEG_QUALITY = 90
+
+
+class Outlined(Protocol):
+    """A wall: `detector.Wall` and `mission.WallRectangle` alike."""
+
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """(3,) bottom left corner in the world [m]."""
+
+    @property
+    def u(self) -> NDArray[np.float64]:
+        """(3,) to the right."""
+
+    @property
+    def v(self) -> NDArray[np.float64]:
+        """(3,) up."""
+
+    @property
+    def width(self) -> float:
+        """Along u [m]."""
+
+    @property
+    def height(self) -> float:
+        """Along v [m]."""
+
+
+def on_grid(points: NDArray[np.floating]) -> NDArray[np.float32]:
+    """Points rounded to the recording's grid of 1/512 m."""
+    scaled = points.astype(np.float32) * np.float32(GRID)
+    np.rint(scaled, out=scaled)
+    scaled *= np.float32(1 / GRID)
+    return scaled
+
+
+def thin(
+    points: NDArray[np.float32], *, cell: float = 0.05, limit: int = 120_000, read: int = 1_500_000
+) -> NDArray[np.int64]:
+    """Choose points for display: one a cell of a grid.
+
+    The grid is shifted by half a cell, for walls like to lie on round coordinates, where noise would spread a plane
+    over two layers of cells.
+
+    Args:
+        points: (N, 3) in the world [m].
+        cell: Side of a cell [m].
+        limit: Most points to choose.
+        read: Most points to look at: a dense scan is strided first.
+
+    Returns:
+        (M,) indices of the chosen points, ascending.
+    """
+    stride = max(1, -(-len(points) // read))
+    sample = points[::stride]
+    if len(sample) == 0:
+        return np.zeros(0, np.int64)
+    cells = np.floor(sample / np.float32(cell) + np.float32(0.5)).astype(np.int64)
+    cells -= cells.min(axis=0)
+    extent = cells.max(axis=0) + 1
+    keys = (cells[:, 0] * extent[1] + cells[:, 1]) * extent[2] + cells[:, 2]
+    chosen = np.unique(keys, return_index=True)[1]
+    chosen = chosen[:: max(1, -(-len(chosen) // limit))]
+    return np.sort(chosen) * stride
+
+
+def display_colours(colours: NDArray[np.uint8], coloured: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """(N, 3) colours with grey where no photograph saw the point."""
+    return np.where(coloured[:, None], colours, np.array(UNCOLOURED, np.uint8))
+
+
+def score_colours(scores: NDArray[np.floating]) -> NDArray[np.uint8]:
+    """(N, 3) sRGB from dark violet for the lowest to yellow for the highest score; not finite counts as lowest."""
+    scores = np.asarray(scores, float)
+    finite = scores[np.isfinite(scores)]
+    low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
+    share = np.nan_to_num((scores - low) / max(high - low, 1e-12), nan=0.0, posinf=0.0, neginf=0.0)
+    bgr = cv2.applyColorMap((share * 255).astype(np.uint8).reshape(-1, 1), cv2.COLORMAP_VIRIDIS)
+    return np.ascontiguousarray(bgr.reshape(-1, 3)[:, ::-1])  # OpenCV has blue first
+
+
+def palette(index: int) -> tuple[int, int, int]:
+    """Colour of a door, by its place in the list."""
+    return PALETTE[index % len(PALETTE)]
+
+
+def outline(wall: Outlined) -> NDArray[np.float64]:
+    """(5, 3) closed outline of a wall in the world [m]."""
+    right, up = wall.u * wall.width, wall.v * wall.height
+    return wall.origin + np.array([np.zeros(3), right, right + up, up, np.zeros(3)])
+
+
+def closed(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N + 1, 3) closed line through corners."""
+    return np.concatenate([corners, corners[:1]])
+
+
+def quads(corners: Sequence[NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.uint32]]:
+    """Vertices (4 N, 3) and triangles (2 N, 3) of N quadrilaterals."""
+    first = 4 * np.arange(len(corners), dtype=np.uint32)[:, None, None]
+    triangles = first + np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
+    return np.concatenate([*corners]), triangles.reshape(-1, 3)
+
+
+def degrees(angle: float | None) -> str:
+    """An angle for people: "34.8", or "-" where there is none."""
+    if angle is None or not np.isfinite(angle):
+        return "-"
+    return f"{np.degrees(angle) + 0.0:.1f}".replace("-0.0", "0.0")
+
+
+def angle_label(evaluation: DoorEvaluation) -> str:
+    """Estimate beside truth: "34.8 deg (joint 35.0)"."""
+    truth = "no such door" if evaluation.true_name is None else f"joint {degrees(evaluation.true_angle)}"
+    return f"{degrees(evaluation.door.opening_angle)} deg ({truth})"
+
+
+def jpeg(image: NDArray[np.uint8], *, quality: int = JPEG_QUALITY) -> bytes:
+    """An sRGB image (H, W, 3) or a grey one (H, W) as JPEG."""
+    bgr = image if image.ndim == 2 else np.ascontiguousarray(image[:, :, ::-1])  # OpenCV has blue first
+    ok, data = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    assert ok
+    return data.tobytes()
+
+
+def shrink(image: NDArray[np.uint8], *, width: int) -> tuple[NDArray[np.uint8], float]:
+    """An image at most `width` pixels wide, and the factor it was scaled by."""
+    factor = min(1.0, width / image.shape[1])
+    if factor == 1.0:
+        return image, 1.0
+    size = (width, max(1, round(image.shape[0] * factor)))
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8), factor

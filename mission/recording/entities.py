@@ -1,0 +1,83 @@
+"""Where things are in the Rerun recording: entity paths and class ids; quantity first, identity last."""
+
+from __future__ import annotations
+
+import rerun as rr
+
+WORLD = "/world"
+ROBOT = "/world/robot"
+ROBOT_BODY = "/world/robot/body"
+CAMERA = "/world/camera"
+CAMERA_PHOTO = "/world/camera/photo"
+CLOUDS = "/world/scans"
+CEILINGS = "/world/ceiling"
+DRIVEN = "/world/path/driven"
+PLANNED = "/world/path/planned"
+LASERS = "/world/lasers"
+CANDIDATES = "/world/candidates/all"
+CHOSEN = "/world/candidates/chosen"
+WALLS = "/world/walls"
+GRID = "/world/map/grid"
+VOXELS = "/world/map/voxels"
+CLUTTER = "/world/map/clutter"
+DOORS = "/world/doors"
+TRUTH = "/world/truth/doors"
+TRUE_PATH = "/world/truth/path"
+SHOTS = "/world/shots"
+
+ANGLES = "/plots/angle"
+COVERAGE = "/plots/coverage"
+SCATTER = "/figures/angle_against_joint"
+ERRORS = "/figures/angle_error"
+STAGES = "/timing/detector_stages"
+STATES = "/states"
+ACTIVITY = "/states/activity"
+DOOR_STATES = "/states/door"
+TABLE = "/table/doors"
+LOG = "/log"
+STAGES_OF_WALLS = "/walls"
+SUMMARY = "/report/summary"
+CONFIGURATION = "/report/configuration"
+
+NOTHING = 0
+OCCUPIED, OCCLUDED, OPENING = 10, 11, 12
+DATA, CENTROID, SEEN_THROUGH, BLOCKED = 20, 21, 22, 23
+REGION_OF_INTEREST, BRIGHT, HIGHLIGHT = 30, 31, 32
+COLOUR_EDGE, DEPTH_EDGE, BOTH_EDGES = 40, 41, 42
+WALL_AREA = 50
+CLUSTERS = 100
+"""Clusters count up from here, in colours that the viewer chooses."""
+
+LEGEND = (
+    (NOTHING, "none", (0, 0, 0, 0)),  # without it every overlay is tinted
+    (OCCUPIED, "occupied", (70, 130, 230, 255)),
+    (OCCLUDED, "occluded", (120, 120, 120, 255)),
+    (OPENING, "opening", (250, 200, 40, 255)),
+    (DATA, "data", (235, 235, 235, 255)),
+    (CENTROID, "opening voxel", (220, 60, 60, 255)),
+    (SEEN_THROUGH, "a beam went through", (250, 200, 40, 255)),
+    (BLOCKED, "something stands before it", (150, 90, 170, 255)),
+    (REGION_OF_INTEREST, "region of interest", (60, 160, 250, 90)),
+    (BRIGHT, "candidate region", (250, 190, 40, 255)),
+    (HIGHLIGHT, "highlight", (230, 40, 160, 255)),
+    (COLOUR_EDGE, "colour edge", (255, 170, 60, 255)),
+    (DEPTH_EDGE, "depth edge", (70, 190, 255, 255)),
+    (BOTH_EDGES, "colour and depth edge", (255, 255, 255, 255)),
+    (WALL_AREA, "wall area", (90, 200, 110, 255)),
+)
+"""Class id, label and colour of all that is drawn by class."""
+
+
+def child(parent: str, *parts: object) -> str:
+    """An entity below another; whatever a scene's author put into a name stays one part of the path."""
+    return "/".join([parent, *(rr.escape_entity_path_part(str(part)) for part in parts)])
+
+
+def wall_name(room: int, number: int) -> str:
+    """A wall for people and paths: "1.2" is the second wall of room 1."""
+    return f"{room}.{number}"
+
+
+def stages(wall: str) -> str:
+    """Where the images of a wall are: outside the world, for they have no place in its 3D view."""
+    return child(STAGES_OF_WALLS, wall)

@@ -1,0 +1,159 @@
+"""Doors in the Rerun recording: leaves at their measured angle beside the joint's, in the world and in photographs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import singledispatchmethod
+from typing import TYPE_CHECKING
+
+import cv2
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from mission.evaluation import DoorEvaluation
+from mission.events import DoorsEvaluated, Drove, Event, MissionStarted, Photographed, Pose, Registered
+from mission.recording import entities
+from mission.recording.drawing import angle_label, closed, jpeg, palette, quads, shrink
+from mission.recording.entities import child
+from mission.recording.rerun_world import TRUTH_COLOUR, log_pose
+
+if TYPE_CHECKING:
+    from sim.camera import Photo
+
+PHOTO_WIDTH = 900
+"""Photographs are recorded at most this wide [px]; the MCAP has them in full."""
+
+
+@dataclass
+class Shot:
+    """A photograph for display, and where it was taken."""
+
+    jpeg: bytes
+    intrinsics: NDArray[np.float64]
+    width: int
+    height: int
+    scanner_from_camera: Pose
+    world_from_camera: Pose
+
+    def shown_area(self, corners: NDArray[np.float64]) -> float:
+        """Area of the picture that quadrilaterals (N, 4, 3) in the world take up [px2], less what is cut off."""
+        return sum(self._shown_area(quad) for quad in corners)
+
+    def _shown_area(self, quad: NDArray[np.float64]) -> float:
+        camera_from_world = np.linalg.inv(self.world_from_camera)
+        in_camera = quad @ camera_from_world[:3, :3].T + camera_from_world[:3, 3]
+        if in_camera[:, 2].min() < 0.1:
+            return 0.0
+        projected = in_camera @ self.intrinsics.T
+        drawn = (projected[:, :2] / projected[:, 2:]).astype(np.float32)
+        frame = np.array([[0, 0], [self.width, 0], [self.width, self.height], [0, self.height]], np.float32)
+        shown = cv2.intersectConvexConvex(cv2.convexHull(drawn), frame)[0]
+        return shown * shown / max(cv2.contourArea(drawn), 1.0)
+
+
+class Doors:
+    """Draws doors, true doors and photographs."""
+
+    def __init__(self, rec: rr.RecordingStream) -> None:
+        """Draw into a recording."""
+        self._rec = rec
+        self._world_from_scanner: Pose = np.eye(4)
+        self._base_from_scanner: Pose = np.eye(4)
+        self._fresh: list[Shot] = []
+        self._shots: list[Shot] = []
+
+    @singledispatchmethod
+    def draw(self, event: Event) -> None:
+        """Draw one event; most show no door."""
+
+    @draw.register
+    def _(self, event: MissionStarted) -> None:
+        self._base_from_scanner = event.base_from_scanner
+        self._world_from_scanner = event.world_from_base @ event.base_from_scanner
+        for door in event.true_doors:
+            self._draw_truth(door.name, [leaf.corners_in_world for leaf in door.leaves])
+
+    @draw.register
+    def _(self, event: Photographed) -> None:
+        self._fresh = [_shot(photo, self._world_from_scanner) for photo in event.photos]
+        if self._fresh:
+            self._show(entities.CAMERA, self._fresh[0])
+
+    @draw.register
+    def _(self, event: Drove) -> None:
+        self._world_from_scanner = event.world_from_base[-1] @ self._base_from_scanner
+
+    @draw.register
+    def _(self, event: Registered) -> None:
+        for shot in self._fresh:
+            shot.world_from_camera = event.world_from_scanner @ shot.scanner_from_camera
+        if self._fresh:
+            self._show(entities.CAMERA, self._fresh[0])
+        self._shots += self._fresh
+        self._fresh = []
+
+    @draw.register
+    def _(self, event: DoorsEvaluated) -> None:
+        for number, evaluation in enumerate(event.doors):
+            self._draw_door(evaluation, colour=palette(number))
+            if evaluation.true_name is not None:
+                self._draw_truth(evaluation.true_name, evaluation.true_leaf_corners_in_world)
+        self._show_best(entities.CAMERA, event.doors)
+        for wall in sorted({evaluation.wall for evaluation in event.doors}):
+            entity = child(entities.SHOTS, entities.wall_name(event.room, wall))
+            self._show_best(entity, [evaluation for evaluation in event.doors if evaluation.wall == wall])
+        self._shots = []
+
+    def _draw_door(self, evaluation: DoorEvaluation, *, colour: tuple[int, int, int]) -> None:
+        door = child(entities.DOORS, evaluation.door_id)
+        leaves = evaluation.leaf_corners_in_world
+        label = f"{evaluation.door_id}: {angle_label(evaluation)}"
+        self._rec.log(
+            f"{door}/doorway",
+            rr.LineStrips3D([closed(evaluation.corners_in_world)], colors=colour, radii=0.015),
+        )
+        self._rec.log(
+            f"{door}/leaf",
+            rr.LineStrips3D(
+                [closed(leaf) for leaf in leaves],
+                colors=colour,
+                radii=0.02,
+            ),
+        )
+        top = evaluation.corners_in_world[2:].mean(axis=0)
+        self._rec.log(f"{door}/label", rr.Points3D([top], colors=colour, radii=0.02, labels=label, show_labels=True))
+        vertices, triangles = quads(leaves)
+        self._rec.log(
+            f"{door}/face",
+            rr.Mesh3D(vertex_positions=vertices, triangle_indices=triangles, albedo_factor=(*colour, 110)),
+        )
+
+    def _draw_truth(self, name: str, leaves: Sequence[NDArray[np.float64]]) -> None:
+        strips = [closed(leaf) for leaf in leaves]
+        self._rec.log(child(entities.TRUTH, name), rr.LineStrips3D(strips, colors=TRUTH_COLOUR, radii=0.008))
+
+    def _show_best(self, entity: str, doors: Sequence[DoorEvaluation]) -> None:
+        """Show the photograph that shows most of some doors."""
+        corners = np.array([door.corners_in_world for door in doors])
+        if self._shots and len(corners):
+            self._show(entity, max(self._shots, key=lambda shot: shot.shown_area(corners)))
+
+    def _show(self, entity: str, shot: Shot) -> None:
+        log_pose(self._rec, entity, shot.world_from_camera)
+        self._rec.log(
+            entity,
+            rr.Pinhole(
+                image_from_camera=shot.intrinsics, width=shot.width, height=shot.height, image_plane_distance=0.4
+            ),
+        )
+        self._rec.log(f"{entity}/photo", rr.EncodedImage(contents=shot.jpeg, media_type="image/jpeg"))
+
+
+def _shot(photo: Photo, world_from_scanner: Pose) -> Shot:
+    image, factor = shrink(photo.image, width=PHOTO_WIDTH)
+    height, width = image.shape[:2]
+    intrinsics = np.diag([factor, factor, 1.0]) @ photo.intrinsics
+    scanner_from_camera = photo.scanner_from_camera
+    return Shot(jpeg(image), intrinsics, width, height, scanner_from_camera, world_from_scanner @ scanner_from_camera)

@@ -1,0 +1,89 @@
+"""What the planner thought, in the Rerun recording: voxel labels, scan candidates with their scores, the grid."""
+
+from __future__ import annotations
+
+from functools import singledispatchmethod
+
+import numpy as np
+import rerun as rr
+
+from mission.events import Event, Planned, Structured
+from mission.recording import entities
+from mission.recording.drawing import score_colours
+from mission.recording.rerun_world import LIFT, PLAN_COLOUR
+
+GRID_COLOURS = np.array([(0, 0, 0, 0), (90, 200, 110, 70), (230, 60, 60, 160)], np.uint8)
+"""Unknown, free and occupied cells."""
+
+
+class Plans:
+    """Draws voxels, candidates and the occupancy grid."""
+
+    def __init__(self, rec: rr.RecordingStream) -> None:
+        """Draw into a recording."""
+        self._rec = rec
+        self._floor = 0.0
+
+    @singledispatchmethod
+    def draw(self, event: Event) -> None:
+        """Draw one event; most are no matter of planning."""
+
+    @draw.register
+    def _(self, event: Structured) -> None:
+        self._floor = event.structure.floor_height
+
+    @draw.register
+    def _(self, event: Planned) -> None:
+        self._draw_candidates(event)
+        self._draw_chosen(event)
+        self._draw_grid(event)
+
+    def _draw_candidates(self, event: Planned) -> None:
+        candidates = event.plan.candidates
+        scores = np.array([candidate.score for candidate in candidates], float)
+        self._rec.log(
+            entities.CANDIDATES,
+            rr.Points3D(
+                [self._on_floor(candidate.position) for candidate in candidates],
+                colors=score_colours(scores),
+                radii=rr.Radius.ui_points(4.0),
+            ),
+            rr.AnyValues(
+                score=scores,
+                gain_m2=np.array([candidate.gain for candidate in candidates], float),
+                overlap=np.array([candidate.overlap for candidate in candidates], float),
+                travel_m=np.array([candidate.travel for candidate in candidates], float),
+                rejected=[candidate.reason or "" for candidate in candidates],
+            ),
+        )
+
+    def _draw_chosen(self, event: Planned) -> None:
+        """The next scan, or nothing when the room is complete."""
+        plan = event.plan
+        chosen = [] if plan.chosen is None else [plan.candidates[plan.chosen]]
+        self._rec.log(
+            entities.CHOSEN,
+            rr.Arrows3D(
+                vectors=[(0.6 * np.cos(c.heading), 0.6 * np.sin(c.heading), 0.0) for c in chosen],
+                origins=[self._on_floor(c.position) for c in chosen],
+                colors=PLAN_COLOUR,
+                radii=0.03,
+                labels=[f"next scan: gains {c.gain:.1f} m2, {c.travel:.1f} m away" for c in chosen],
+                show_labels=True,
+            ),
+        )
+
+    def _draw_grid(self, event: Planned) -> None:
+        """The occupancy grid, lying on the floor."""
+        grid = event.grid
+        image = np.ascontiguousarray(GRID_COLOURS[np.minimum(grid.cells, 2)][::-1])  # Rerun wants the top row first
+        height, width = grid.cells.shape
+        shape = rr.components.ImageFormat(width=width, height=height, color_model="RGBA", channel_datatype="U8")
+        corner = (grid.origin[0], grid.origin[1], self._floor + LIFT / 2)
+        self._rec.log(
+            entities.GRID,
+            rr.GridMap(data=image.tobytes(), format=shape, cell_size=grid.resolution, translation=corner),
+        )
+
+    def _on_floor(self, position: np.ndarray) -> tuple[float, float, float]:
+        return float(position[0]), float(position[1]), self._floor + LIFT

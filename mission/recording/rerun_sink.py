@@ -1,0 +1,112 @@
+"""The mission as a Rerun recording: what a person looks at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+import rerun as rr
+
+from mission.events import DoorsDetected, Event, MissionStarted, Structured
+from mission.recording import entities
+from mission.recording.blueprint import Outlook, WallTab, blueprint, outlook
+from mission.recording.drawing import outline
+from mission.recording.rerun_doors import Doors
+from mission.recording.rerun_plans import Plans
+from mission.recording.rerun_plots import Plots
+from mission.recording.rerun_results import Results
+from mission.recording.rerun_walls import Walls
+from mission.recording.rerun_world import World
+
+APPLICATION = "door-mission"
+
+
+class RerunSink:
+    """Writes every event to an .rrd file as it happens; the layout of the viewer is inside.
+
+    Timelines: `step` counts events and is the axis to review on (detection takes no mission time), `mission_time`
+    is simulated time, `scan` and `room` count. Wall clock times are not recorded, save those that the detector took.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Record into a file, which is overwritten."""
+        self._path = path
+        self._scan_number = 0
+        self._outlook = Outlook(np.array([-4.0, -6.0, 7.0]), np.zeros(3))
+        self._walls: list[WallTab] = []
+        self._shown: tuple[WallTab, ...] = ()
+        self._known_rooms: set[int] = set()
+
+    def __enter__(self) -> Self:
+        rr.set_strict_mode(True)  # a mistake in what is logged is an error, not a warning nobody reads
+        where = self._path.resolve()
+        self._rec = rr.RecordingStream(APPLICATION, recording_id=f"{where.parent.name}-{where.stem}")
+        self._rec.set_log_time_enabled(False)
+        self._rec.save(self._path)
+        legend = rr.AnnotationContext(
+            [rr.AnnotationInfo(number, label, colour) for number, label, colour in entities.LEGEND]
+        )
+        for place in (entities.WORLD, entities.STAGES_OF_WALLS):
+            self._rec.log(place, legend, static=True)
+        self._drawers = [drawer(self._rec) for drawer in (World, Plans, Doors, Walls, Plots, Results)]
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._shown != tuple(self._walls):
+            self._send_layout(self._walls)
+        self._rec.flush()
+        self._rec.disconnect()  # writes the footer
+
+    def handle(self, event: Event) -> None:
+        """Record one event; when this returns, the event is in the file."""
+        self._scan_number = getattr(event, "scan_number", self._scan_number)
+        self._rec.set_time("step", sequence=event.step)
+        self._rec.set_time("mission_time", duration=np.timedelta64(event.time, "ns"))
+        self._rec.set_time("scan", sequence=self._scan_number)
+        self._rec.set_time("room", sequence=event.room)
+        for drawer in self._drawers:
+            drawer.draw(event)
+        self._lay_out(event)
+        self._rec.flush()
+
+    def _lay_out(self, event: Event) -> None:
+        """Fit the viewer's layout to what is known by now: an interrupted recording opens well, too.
+
+        As a layout takes up to half a megabyte a room, only the walls of the room just done are in it until the end.
+        """
+        match event:
+            case MissionStarted():
+                self._rec.send_recording_name(f"{event.scene}, seed {event.seed}")
+                place = event.world_from_base[:3, 3]
+                self._outlook = outlook(np.array([place - 3.0, place + 3.0]))
+                self._send_layout(())
+            case Structured() if event.room not in self._known_rooms:
+                self._known_rooms.add(event.room)
+                self._outlook = outlook(np.concatenate([outline(wall) for wall in event.structure.walls]))
+                self._send_layout(())
+            case DoorsDetected():
+                walls = _wall_tabs(event)
+                self._walls += walls
+                self._send_layout(walls)
+
+    def _send_layout(self, walls: Sequence[WallTab]) -> None:
+        self._shown = tuple(walls)
+        self._rec.send_blueprint(blueprint(self._outlook, walls))
+
+
+def _wall_tabs(event: DoorsDetected) -> list[WallTab]:
+    """A tab a wall; each opens with the view that has the largest highlight."""
+    return [
+        WallTab(
+            name=entities.wall_name(event.room, number),
+            views=len(result.views),
+            first_view=int(np.argmax([h.regions.sum() for h in result.highlights])) if result.views else 0,
+            has_doors=bool(result.doors),
+        )
+        for number, result in enumerate(event.results, start=1)
+    ]

@@ -1,0 +1,170 @@
+"""The detector's stages in the Rerun recording, wall by wall, in the order of the paper's figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from detector.result import Candidate, Highlights, Orthoimage, Rectangle, WallResult
+from mission.events import DoorsDetected, Event
+from mission.recording import entities
+from mission.recording.drawing import jpeg
+
+ACCEPTED, REJECTED = (70, 210, 90), (235, 70, 70)
+LINE = (255, 120, 40)
+SHOWN_CANDIDATES = 12
+"""At most so many rejected rectangles are drawn: of a cluttered wall there are thousands."""
+TRINARY = np.array([entities.NOTHING, entities.DATA, entities.CENTROID], np.uint8)
+VISIBILITY = np.array([entities.NOTHING, entities.DATA, entities.SEEN_THROUGH, entities.BLOCKED], np.uint8)
+DEPTH_RANGE = 0.15
+"""Depths from the wall plane beyond this share the colours at the ends of the scale [m]."""
+
+
+class Walls:
+    """Draws every intermediate product of the detector."""
+
+    def __init__(self, rec: rr.RecordingStream) -> None:
+        """Draw into a recording."""
+        self._rec = rec
+
+    def draw(self, event: Event) -> None:
+        """Draw one event; only the detector's has walls."""
+        if isinstance(event, DoorsDetected):
+            for number, result in enumerate(event.results, start=1):
+                draw_wall(self._rec, entities.stages(entities.wall_name(event.room, number)), result)
+
+
+def draw_wall(rec: rr.RecordingStream, entity: str, result: WallResult) -> None:
+    """Draw all stages of a wall below an entity."""
+    for place, (view, highlights) in enumerate(zip(result.views, result.highlights, strict=True)):
+        _draw_view(rec, f"{entity}/view/{place}", view, highlights)
+    _draw_merged(rec, f"{entity}/merged", result)
+    _draw_openings(rec, f"{entity}/openings", result)
+    _draw_wall_area(rec, f"{entity}/wall_area", result)
+    _draw_search(rec, entity, result)
+
+
+def _draw_view(rec: rr.RecordingStream, entity: str, view: Orthoimage, highlights: Highlights) -> None:
+    """Section 4.1, figures 3 and 4."""
+    rec.log(f"{entity}/colour", _picture(view.colour))
+    rec.log(f"{entity}/inpainted", _picture(highlights.inpainted))
+    classes = np.zeros(highlights.regions.shape, np.uint8)
+    classes[highlights.region_of_interest] = entities.REGION_OF_INTEREST
+    classes[highlights.candidates > 0] = entities.BRIGHT
+    classes[highlights.regions] = entities.HIGHLIGHT
+    rec.log(f"{entity}/highlights/regions", rr.SegmentationImage(classes, opacity=0.5))
+    ends = [contour[:, ::-1] + 0.5 for contour in highlights.contours]  # (row, column) to (x, y)
+    rec.log(
+        f"{entity}/highlights/profiles",
+        rr.LineStrips2D([np.concatenate([end, end[:1]]) for end in ends], colors=LINE, radii=rr.Radius.ui_points(1.0)),
+    )
+
+
+def _draw_merged(rec: rr.RecordingStream, entity: str, result: WallResult) -> None:
+    """Section 4.2: the unified orthoimage, its depth, and the doors that were found in it."""
+    rec.log(f"{entity}/colour", _picture(result.merged.colour))
+    millimetres = np.nan_to_num(result.merged.depth * 1000.0, nan=-32000.0)  # no data looks like a deep hole
+    rec.log(
+        f"{entity}/depth",
+        rr.DepthImage(
+            np.clip(millimetres, -32000, 32000).astype(np.int16),
+            meter=1000.0,
+            colormap="turbo",
+            depth_range=(-DEPTH_RANGE * 1000, DEPTH_RANGE * 1000),
+        ),
+    )
+    doors = [door.rectangle for door in result.doors]
+    labels = [f"{door.kind}, {door.state}" for door in result.doors]
+    _draw_boxes(rec, f"{entity}/doors", result, doors, colours=[ACCEPTED] * len(doors), labels=labels)
+
+
+def _draw_openings(rec: rr.RecordingStream, entity: str, result: WallResult) -> None:
+    """Section 5, figure 7."""
+    openings = result.openings
+    rec.log(f"{entity}/trinary", rr.SegmentationImage(TRINARY[openings.trinary]))
+    rec.log(f"{entity}/visibility", rr.SegmentationImage(VISIBILITY[openings.visibility]))
+    rec.log(f"{entity}/lines", _lines(openings.trinary.shape, openings.horizontal_lines, openings.vertical_lines))
+    colours = [ACCEPTED if door else LINE for door in openings.is_door]
+    labels = ["open door" if door else "not a door" for door in openings.is_door]
+    _draw_boxes(rec, f"{entity}/rectangles", result, openings.rectangles, colours=colours, labels=labels)
+
+
+def _draw_wall_area(rec: rr.RecordingStream, entity: str, result: WallResult) -> None:
+    """Section 6.1, figure 8."""
+    area = result.wall_area
+    clusters = np.where(area.clusters > 0, area.clusters + entities.CLUSTERS, entities.NOTHING)
+    rec.log(f"{entity}/clusters", rr.SegmentationImage(clusters.astype(np.uint16)))
+    kept = area.seeds[area.seed_clusters > 0]
+    rec.log(
+        f"{entity}/seeds",
+        rr.Points2D(kept[:, ::-1] + 2.5, colors=(255, 255, 255), radii=rr.Radius.ui_points(0.8)),  # middle of 5 x 5
+    )
+    mask = np.where(area.mask, entities.WALL_AREA, entities.NOTHING)
+    rec.log(f"{entity}/mask", rr.SegmentationImage(mask.astype(np.uint8), opacity=0.6))
+
+
+def _draw_search(rec: rr.RecordingStream, entity: str, result: WallResult) -> None:
+    """Section 6.2, figures 9 and 10."""
+    search = result.search
+    classes = np.zeros(search.edges.shape, np.uint8)
+    classes[search.colour_edges] = entities.COLOUR_EDGE
+    classes[search.depth_edges] = entities.DEPTH_EDGE
+    classes[search.colour_edges & search.depth_edges] = entities.BOTH_EDGES
+    rec.log(f"{entity}/edges/classes", rr.SegmentationImage(classes))
+    rec.log(f"{entity}/edges/lines", _lines(classes.shape, search.horizontal_lines, search.vertical_lines))
+    shown = shown_candidates(search.candidates)
+    columns = ("dominant_colour_share", "dominant_depth_share", "wall_share")
+    hover = {name: np.array([getattr(candidate, name) for candidate in shown], float) for name in columns}
+    support = np.array([min(candidate.side_support) for candidate in shown], float)
+    rec.log(f"{entity}/candidates/boxes", rr.AnyValues(**hover, least_side_support=support))
+    _draw_boxes(
+        rec,
+        f"{entity}/candidates",
+        result,
+        [candidate.rectangle for candidate in shown],
+        colours=[REJECTED if candidate.rejected_by else ACCEPTED for candidate in shown],
+        labels=[candidate.rejected_by or "accepted" for candidate in shown],
+    )
+
+
+def shown_candidates(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """The candidates to draw: all accepted ones last, so that they lie on top, and of the rejected ones those that
+    came furthest, by how well their weakest side is supported."""
+    accepted = [candidate for candidate in candidates if candidate.rejected_by is None]
+    rejected = [candidate for candidate in candidates if candidate.rejected_by is not None]
+    rejected.sort(key=lambda candidate: min(candidate.side_support), reverse=True)
+    return [*rejected[:SHOWN_CANDIDATES], *accepted]
+
+
+def _picture(image: NDArray[np.uint8]) -> rr.EncodedImage:
+    return rr.EncodedImage(contents=jpeg(image), media_type="image/jpeg")
+
+
+def _draw_boxes(
+    rec: rr.RecordingStream,
+    entity: str,
+    result: WallResult,
+    rectangles: Sequence[Rectangle],
+    *,
+    colours: Sequence[tuple[int, int, int]],
+    labels: Sequence[str],
+) -> None:
+    """Rectangles on the wall as boxes in its images, each with its label near its top."""
+    pixel, height = result.merged.pixel_size, result.wall.height
+    mins = [(r.left / pixel, (height - r.top) / pixel) for r in rectangles]
+    sizes = [(r.width / pixel, r.height / pixel) for r in rectangles]
+    thickness = rr.Radius.ui_points(1.5)
+    rec.log(f"{entity}/boxes", rr.Boxes2D(mins=mins, sizes=sizes, colors=colours, radii=thickness))
+    tops = [(left + width / 2, top) for (left, top), (width, _) in zip(mins, sizes, strict=True)]
+    rec.log(f"{entity}/labels", rr.Points2D(tops, colors=colours, radii=0.0, labels=labels, show_labels=True))
+
+
+def _lines(shape: tuple[int, ...], rows: NDArray[np.int32], columns: NDArray[np.int32]) -> rr.LineStrips2D:
+    """Lines of a lateral histogram, from one end of the image to the other."""
+    height, width = shape[:2]
+    across = [[(0.0, row + 0.5), (width, row + 0.5)] for row in rows]
+    down = [[(column + 0.5, 0.0), (column + 0.5, height)] for column in columns]
+    return rr.LineStrips2D(across + down, colors=(*LINE, 160), radii=rr.Radius.ui_points(0.7))
