@@ -91,6 +91,8 @@ class Openings:
     """Best rectangle of each cluster."""
     is_door: tuple[bool, ...]
     """For each rectangle: its lower side is at the floor."""
+    visibility: Image
+    """(H, W) 0 never met by a beam, 1 data, 2 a beam went through, 3 something stands before it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,189 @@
+"""Opening angle of door leaves (section 6.3).
+
+A leaf is a line in plan that starts at a jamb. The paper draws random pairs of points (RANSAC); with the doorway known
+only the depth of the hinge and the angle are unknown, few enough to try all of them, so that the consensus is the best
+there is and no random number is needed. The line is then fitted to its inliers by total least squares.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from detector.parameters import DetectorParameters
+from detector.result import Leaf, Rectangle
+
+HINGE_DEPTHS = np.arange(-0.30, 0.091, 0.02)
+"""Where the hinge may lie: up to a wall's thickness behind the plane, up to a frame's before it [m]."""
+ANGLE_STEP = np.deg2rad(0.5)
+RADIAL_STEP = 0.04
+"""Length of the pieces of a leaf that must be seen [m]."""
+NEAREST_RADIUS = 0.08
+"""Points nearer to the hinge belong to the jamb [m]."""
+MIN_COVER = 0.35
+"""Least share of the leaf's length that is seen."""
+MAX_SLICE = 40_000
+"""Points that are enough for one leaf."""
+SLICE = 0.1
+"""Half height of the slice at half height [m]."""
+MIN_POINTS = 40
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A leaf hypothesis in plan, seen from its hinge: r along the closed leaf, d into the room."""
+
+    hinge_depth: float
+    angle: float
+    """From the closed leaf, positive into the room [rad]."""
+    cover: float
+    """Share of the leaf's length that has points."""
+
+
+def fit_leaf(
+    points: NDArray[np.float32], doorway: Rectangle, hinge: Literal["left", "right"], parameters: DetectorParameters
+) -> tuple[Leaf, float] | None:
+    """The open leaf on one hinge side.
+
+    Args:
+        points: (N, 3) points round the doorway in wall coordinates [m].
+        doorway: What this leaf fills when it is closed.
+
+    Returns:
+        The leaf and the share of its length that was seen, or None where no line looks like a leaf.
+    """
+    width = doorway.width
+    sign, corner = (1.0, doorway.left) if hinge == "left" else (-1.0, doorway.right)
+    r, d = sign * (points[:, 0] - corner), points[:, 2]
+    chosen = _slice(points, doorway, parameters)
+    # what lies in the wall's own plane beside the doorway is wall
+    chosen &= ~((np.abs(d) < 0.07) & ((r < 0.02) | (r > width - 0.01)))
+    chosen &= (np.hypot(r, d) < width + 0.45) & (r > -0.5)
+    index = np.flatnonzero(chosen)
+    index = index[:: 1 + len(index) // MAX_SLICE]
+    if len(index) < MIN_POINTS:
+        return None
+    plan = np.stack([r[index], d[index]], axis=1).astype(np.float64)
+    line = _consensus(plan, width, parameters)
+    if line is None:
+        return None
+    return _refine(plan, points[index, 1], line, (hinge, sign, corner), (doorway, parameters))
+
+
+def _slice(points: NDArray[np.float32], doorway: Rectangle, parameters: DetectorParameters) -> NDArray[np.bool_]:
+    """(N,) the points that the line is fitted to: away from floor and lintel, or at half height."""
+    v = points[:, 1]
+    middle = (doorway.bottom + doorway.top) / 2
+    reach = SLICE if parameters.leaf_slice == "half-height" else 0.42 * doorway.height
+    return np.abs(v - middle) < reach
+
+
+def _consensus(plan: NDArray, width: float, parameters: DetectorParameters) -> _Line | None:
+    """The hinge depth and angle whose ray from the hinge meets points over the most of the leaf's length."""
+    count = int(np.ceil(2 * parameters.max_angle / ANGLE_STEP)) + 1
+    bins = int(np.ceil((width + 0.4) / RADIAL_STEP))
+    leaf_bins = round(width / RADIAL_STEP)
+    first = round(NEAREST_RADIUS / RADIAL_STEP)
+    best: _Line | None = None
+    best_score = MIN_COVER
+    for depth in HINGE_DEPTHS:
+        radius, angle = np.hypot(plan[:, 0], plan[:, 1] - depth), np.arctan2(plan[:, 1] - depth, plan[:, 0])
+        inside = (np.abs(angle) <= parameters.max_angle) & (radius < bins * RADIAL_STEP)
+        column = ((angle[inside] + parameters.max_angle) / ANGLE_STEP).astype(np.int64)
+        cell = column * bins + (radius[inside] / RADIAL_STEP).astype(np.int64)
+        counts = np.bincount(cell, minlength=count * bins)[: count * bins].reshape(count, bins)
+        # a leaf is as thick in angle as its points scatter, which near the hinge is more than one step
+        counts = counts + np.roll(counts, 1, axis=0) + np.roll(counts, -1, axis=0)
+        occupied = counts >= max(3, len(plan) // 4000)
+        cover = occupied[:, first:leaf_bins].mean(axis=1)
+        beyond = occupied[:, leaf_bins + 3 :].mean(axis=1)  # a wall goes on where a leaf ends
+        centres = (np.arange(count) + 0.5) * ANGLE_STEP - parameters.max_angle
+        # of equal covers the one with the hinge nearest to the wall's face, and the one with more points
+        dense = np.log1p(counts[:, first:leaf_bins].sum(axis=1)) / 100
+        score = cover - 0.7 * beyond - 0.3 * abs(depth) + dense
+        score[np.abs(centres) < parameters.closed_angle] = -1
+        i = int(score.argmax())
+        if score[i] > best_score and cover[i] >= MIN_COVER:
+            best, best_score = _Line(float(depth), float(centres[i]), float(cover[i])), float(score[i])
+    return best
+
+
+def _refine(
+    plan: NDArray, v: NDArray, line: _Line, side: tuple[Literal["left", "right"], float, float], of: tuple
+) -> tuple[Leaf, float] | None:
+    """Total least squares on the inliers of the hypothesis."""
+    (hinge, sign, corner), (doorway, parameters) = side, of
+    angle, origin = line.angle, np.array([0.0, line.hinge_depth])
+    tolerance = 0.035
+    keep = np.zeros(len(plan), bool)
+    for round_number in range(6):
+        along = np.array([np.cos(angle), np.sin(angle)])
+        across = np.array([-along[1], along[0]])
+        radius, offset = (plan - origin) @ along, (plan - origin) @ across
+        near = (radius > 0.03) & (radius < doorway.width + 0.06) & (np.abs(offset) < tolerance)
+        if near.sum() < MIN_POINTS:
+            return None
+        if round_number == 0:  # a leaf seen from both sides shows two faces: stay with the denser one
+            histogram, edges = np.histogram(offset[near], np.arange(-tolerance, tolerance + 0.005, 0.005))
+            peak = edges[np.convolve(histogram, [1, 1, 1], "same").argmax()] + 0.0025
+            keep = near & (np.abs(offset - peak) < 1.5 * parameters.leaf_inlier)
+        else:
+            keep = near
+        if keep.sum() < MIN_POINTS:
+            return None
+        origin, angle = _total_least_squares(plan[keep], angle)
+        tolerance = parameters.leaf_inlier
+        origin = origin - along * (origin[0] * along[0] + (origin[1] - line.hinge_depth) * along[1])
+    spread = radius[keep]
+    if np.ptp(v[keep]) < 0.3 * doorway.height and parameters.leaf_slice == "all":
+        return None
+    scatter = max(float(np.std(offset[keep])), 1e-4)
+    std = scatter / np.sqrt(max(((spread - spread.mean()) ** 2).sum(), 1e-9))
+    points = np.stack([corner + sign * plan[keep, 0], plan[keep, 1]], axis=1).astype(np.float32)
+    points = points[:: 1 + len(points) // 5000]
+    cover = len(np.unique((spread / RADIAL_STEP).astype(int))) * RADIAL_STEP / doorway.width
+    opens: Literal["inward", "outward"] = "inward" if angle > 0 else "outward"
+    return Leaf(hinge, abs(float(angle)), float(std), opens, points), min(cover, 1.0)
+
+
+def _total_least_squares(plan: NDArray, angle: float) -> tuple[NDArray, float]:
+    """Centroid and direction of the line through points (N, 2); the direction nearest to `angle` [rad]."""
+    centre = plan.mean(axis=0)
+    x, y = (plan - centre).T
+    direction = 0.5 * np.arctan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum())
+    turns = np.round((angle - direction) / np.pi)
+    return centre, float(direction + turns * np.pi)
+
+
+def slope_in_doorway(
+    depth: NDArray[np.float32], doorway: Rectangle, height: float, pixel_size: float
+) -> tuple[float, float, float]:
+    """Angle [rad], depth [m] and share of the plane that fills a doorway, from the orthoimage's depth.
+
+    Returns:
+        Angle against the wall's plane (positive: nearer on the right), depth at the middle, and the share of the
+        doorway's columns that lie on it; (NaN, NaN, 0) where less than a third of the columns has data.
+    """
+    margin = 0.04
+    rows = np.s_[
+        max(0, int((height - doorway.top + margin) / pixel_size)) : int((height - doorway.bottom - 0.1) / pixel_size)
+    ]
+    first, last = (int(x / pixel_size) for x in (doorway.left + margin, doorway.right - margin))
+    inner = depth[rows, max(first, 0) : last]
+    if inner.size == 0:
+        return float("nan"), float("nan"), 0.0
+    data = np.isfinite(inner)
+    filled = np.flatnonzero(data.mean(axis=0) > 0.3)
+    if len(filled) < max(3, inner.shape[1] / 3):
+        return float("nan"), float("nan"), 0.0
+    medians = np.nanmedian(inner[::2, filled], axis=0).astype(np.float64)
+    x = filled * pixel_size
+    i, j = np.triu_indices(len(x), max(1, len(x) // 3))
+    slope = float(np.median((medians[j] - medians[i]) / (x[j] - x[i])))
+    middle = inner.shape[1] * pixel_size / 2
+    offset = float(np.median(medians - slope * (x - middle)))
+    on_plane = np.abs(medians - slope * (x - middle) - offset) < 0.015
+    return float(np.arctan(slope)), offset, float(on_plane.sum() / inner.shape[1])

@@ -1,0 +1,240 @@
+"""Rectangles of door size that stand on the floor, and what each condition of section 6.2 measures on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from detector.edges import Edges
+from detector.openings import Visibility
+from detector.parameters import DetectorParameters
+from detector.rectangles import box_sums, integral, pairs
+from detector.result import Image, Mask, Orthoimage
+
+FOOT = 0.3
+"""The sides of a door reach the floor; those of a panel in it do not: tested over this height [m]."""
+FOOT_SUPPORT = 0.4
+STRIP = (0.01, 0.06)
+"""What surrounds a door is looked at from here to there outside its sides [m]."""
+SURROUND_DEPTH = 0.045
+"""The wall and its frames lie within this of the wall's plane [m]."""
+SAME_COLOUR = 0.02
+"""Colours closer than this in every channel are the same, of 1."""
+SAME_DEPTH = 0.006
+"""Depths closer than this are the same [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """The images that candidates are judged on, with their integral images computed once."""
+
+    merged: Orthoimage
+    seen: Image
+    edges: Edges
+    wall: Mask
+    floor_row: int
+    """First row below the floor."""
+    lowest_row: int
+    """First row that may hold points of the floor instead of the wall."""
+
+    def sums(self, mask: Mask) -> NDArray[np.int64]:
+        """Integral image of a mask, above the floor's points."""
+        upper = mask.copy()
+        upper[self.lowest_row :] = False
+        return integral(upper)
+
+
+@dataclass(frozen=True, eq=False)
+class Boxes:
+    """N rectangles between lines: positions [px], whole numbers are pixel centres."""
+
+    left: NDArray[np.float64]
+    right: NDArray[np.float64]
+    top: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.left)
+
+    def __getitem__(self, chosen: NDArray) -> Boxes:
+        return Boxes(self.left[chosen], self.right[chosen], self.top[chosen])
+
+
+def door_boxes(
+    vertical: NDArray[np.float64], horizontal: NDArray[np.float64], scene: Scene, parameters: DetectorParameters
+) -> Boxes:
+    """All rectangles of door size between the lines, standing on the floor."""
+    px = scene.merged.pixel_size
+    sides = pairs(vertical, parameters.min_width / px, parameters.max_width / px)
+    height = (scene.floor_row - 0.5 - horizontal) * px
+    tops = horizontal[(height >= parameters.min_height) & (height <= parameters.max_height)]
+    side, top = np.meshgrid(np.arange(len(sides)), np.arange(len(tops)), indexing="ij")
+    chosen = sides[side.ravel()]
+    return Boxes(vertical[chosen[:, 0]], vertical[chosen[:, 1]], tops[top.ravel()])
+
+
+def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> tuple[NDArray, NDArray]:
+    """Condition 2: share of the left, top, right and bottom sides on a discontinuity, (N, 4); and of the feet, (N, 2).
+
+    Shares are of the visible length, of which there must be at least half; what furniture hides can neither support
+    nor refute. The bottom is the floor.
+    """
+    visible = (scene.seen == Visibility.DATA) | (scene.seen == Visibility.THROUGH)
+    result = np.ones((len(boxes), 4))
+    feet = np.ones((len(boxes), 2))
+    foot = max(1, round(FOOT / scene.merged.pixel_size))
+    top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
+    lowest = np.full(len(boxes), scene.lowest_row)
+    for axis, mask in ((1, scene.edges.upright), (0, scene.edges.level)):
+        shape = np.ones((1, 3) if axis == 1 else (3, 1), np.uint8)
+        hits = scene.sums(cv2.dilate(mask.astype(np.uint8), shape) > 0)
+        open_to_view = scene.sums(cv2.dilate(visible.astype(np.uint8), np.ones(shape.T.shape[::-1], np.uint8)) > 0)
+        if axis == 1:
+            for i, column in ((0, left), (2, right)):
+                result[:, i] = _share(hits, open_to_view, np.stack([top, column, lowest, column + 1], axis=1), 0.4)
+                ends = np.stack([lowest - foot, column, lowest, column + 1], axis=1)
+                feet[:, i // 2] = _share(hits, open_to_view, ends, 0.3, blind=1.0)
+        else:
+            result[:, 1] = _share(hits, open_to_view, np.stack([top, left, top + 1, right + 1], axis=1), 0.4)
+    return result, feet
+
+
+def _share(hits: NDArray, visible: NDArray, boxes: NDArray, least_visible: float, blind: float = 0.0) -> NDArray:
+    """Hits per visible pixel of each box; `blind` where too little of it is visible."""
+    area = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
+    seen = box_sums(visible, boxes)
+    return np.where(seen >= least_visible * area, np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0), blind)
+
+
+def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]:
+    """Shares (N,) of each rectangle that are wall area (condition 3), visible, and looked through."""
+    box = np.stack(
+        [
+            np.ceil(boxes.top + 0.5),
+            np.ceil(boxes.left + 0.5),
+            np.full(len(boxes), scene.lowest_row),
+            np.floor(boxes.right + 0.5),
+        ],
+        axis=1,
+    ).astype(np.int64)
+    area = np.maximum((box[:, 2] - box[:, 0]) * (box[:, 3] - box[:, 1]), 1)
+    through = scene.seen == Visibility.THROUGH
+    masks = (scene.wall, through | (scene.seen == Visibility.DATA), through)
+    wall, visible, passed = (box_sums(scene.sums(mask), box) / area for mask in masks)
+    return wall, visible, passed
+
+
+def surroundings(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
+    """(N, 3) share of the visible strips outside the left, top and right sides that lies in the wall's plane.
+
+    A rectangle inside an open doorway, between the jamb and the edge of the leaf, has no wall on one side. 1 where the
+    strip is hidden or beyond the image.
+    """
+    depth = scene.merged.depth
+    plane = scene.sums(np.abs(np.nan_to_num(depth, nan=np.inf)) < SURROUND_DEPTH)
+    visible = scene.sums((scene.seen == Visibility.DATA) | (scene.seen == Visibility.THROUGH))
+    result = np.ones((len(boxes), 3))
+    for i, strip in enumerate(strips(boxes, scene, outside=True)):
+        area = np.maximum((strip[:, 2] - strip[:, 0]) * (strip[:, 3] - strip[:, 1]), 1)
+        seen = box_sums(visible, strip)
+        result[:, i] = np.where(seen > 0.2 * area, box_sums(plane, strip) / np.maximum(seen, 1), 1.0)
+    return result
+
+
+def strips(boxes: Boxes, scene: Scene, *, outside: bool) -> list[NDArray[np.int64]]:
+    """Boxes (N, 4) of the strips along the left, top and right sides: top, left, bottom, right, half open."""
+    near, far = (np.rint(x / scene.merged.pixel_size) for x in STRIP)
+    sign = 1 if outside else -1
+    left, right, top = boxes.left + 0.5, boxes.right + 0.5, boxes.top + 0.5
+    low = np.full(len(boxes), scene.lowest_row, float)
+    spans = [np.sort(np.stack([x - sign * near, x - sign * far]), axis=0) for x in (left, top)]
+    spans.append(np.sort(np.stack([right + sign * near, right + sign * far]), axis=0))
+    result = [
+        np.stack([top, spans[0][0], low, spans[0][1]], axis=1),
+        np.stack([spans[1][0], left, spans[1][1], right], axis=1),
+        np.stack([top, spans[2][0], low, spans[2][1]], axis=1),
+    ]
+    limit = np.array([*scene.seen.shape, *scene.seen.shape])
+    return [np.clip(np.rint(r), 0, limit).astype(np.int64) for r in result]
+
+
+def is_bounded(box: Boxes, scene: Scene) -> bool:
+    """Whether each side of one rectangle divides things: another colour, another depth, or wall outside.
+
+    The groove of a panel or plank has the same leaf on both sides.
+    """
+    inner, outer = strips(box, scene, outside=False), strips(box, scene, outside=True)
+    for i in range(3):
+        cut = [np.s_[b[0, 0] : b[0, 2], b[0, 1] : b[0, 3]] for b in (inner[i], outer[i])]
+        known = [scene.merged.coloured[c] & np.isfinite(scene.merged.depth[c]) for c in cut]
+        if any(k.sum() < 0.1 * max(k.size, 1) for k in known):
+            continue
+        if scene.wall[cut[1]][known[1]].mean() > 0.4:
+            continue
+        colours = [np.median(scene.merged.colour[c][k], axis=0) / 255 for c, k in zip(cut, known, strict=True)]
+        depths = [float(np.median(scene.merged.depth[c][k])) for c, k in zip(cut, known, strict=True)]
+        if np.abs(colours[0] - colours[1]).max() < SAME_COLOUR and abs(depths[0] - depths[1]) < SAME_DEPTH:
+            return False
+    return True
+
+
+@dataclass(frozen=True)
+class Dominance:
+    """Condition 1 on one rectangle."""
+
+    colour_share: float
+    """Visible share that has the dominant colour, or is looked through if that is more."""
+    depth_share: float
+    """Visible share that lies on the dominant plane, or is looked through if that is more."""
+    depth: float
+    """Depth of the dominant plane at the middle of the rectangle [m]; NaN without data."""
+
+
+def dominance(box: Boxes, scene: Scene) -> Dominance:
+    """Dominant colour and depth of one rectangle; the depth may slope along u, as that of a semi-open leaf does."""
+    cut = np.s_[
+        int(np.ceil(box.top[0] + 0.5)) : scene.lowest_row,
+        int(np.ceil(box.left[0] + 0.5)) : int(np.floor(box.right[0] + 0.5)),
+    ]
+    seen, depth = scene.seen[cut], scene.merged.depth[cut]
+    data = seen == Visibility.DATA
+    through = float((seen == Visibility.THROUGH).sum())
+    total = max(data.sum() + through, 1.0)
+    if data.sum() < 10:
+        return Dominance(through / total, through / total, float("nan"))
+    offset, slope = _plane(depth, data)
+    middle = (np.arange(depth.shape[1]) - (depth.shape[1] - 1) / 2) * slope + offset
+    on_plane = data & (np.abs(depth - middle[None, :]) < 0.02)
+    coloured = data & scene.merged.coloured[cut]
+    colour_share = float(data.sum())
+    if coloured.any():
+        colour_share *= _dominant_colour(scene.merged.colour[cut][coloured])
+    return Dominance(max(through, colour_share) / total, max(through, float(on_plane.sum())) / total, float(offset))
+
+
+def _plane(depth: NDArray, data: Mask) -> tuple[float, float]:
+    """Depth at the middle column and slope per column of the dominant plane, from the medians of the columns."""
+    columns = np.flatnonzero(data.sum(axis=0) >= 0.2 * data.shape[0])
+    if len(columns) < 5:
+        return float(np.median(depth[data])), 0.0
+    columns = columns[:: max(1, len(columns) // 60)]
+    medians = np.nanmedian(np.where(data[:, columns], depth[:, columns], np.nan), axis=0)
+    i, j = np.triu_indices(len(columns), max(1, len(columns) // 6))
+    slope = float(np.median((medians[j] - medians[i]) / (columns[j] - columns[i])))
+    offset = float(np.median(medians - slope * (columns - (depth.shape[1] - 1) / 2)))
+    return offset, slope
+
+
+def _dominant_colour(colours: Image) -> float:
+    """Share of the pixels in the most frequent colour: the fullest bin of a coarse histogram and those like its mean."""
+    values = colours[:: 1 + len(colours) // 20_000].astype(np.float32) / 255
+    bins = (values * 12).astype(np.int64)
+    codes, counts = np.unique(bins[:, 0] * 169 + bins[:, 1] * 13 + bins[:, 2], return_counts=True)
+    fullest = codes[counts.argmax()]
+    centre = values[(bins[:, 0] * 169 + bins[:, 1] * 13 + bins[:, 2]) == fullest].mean(axis=0)
+    for _ in range(3):
+        like = np.abs(values - centre).max(axis=1) < 0.12
+        centre = values[like].mean(axis=0)
+    return float(like.mean())

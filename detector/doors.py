@@ -1,0 +1,170 @@
+"""Doors as rectangles of discontinuities that are not wall (section 6.2)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from detector.candidates import (
+    FOOT_SUPPORT,
+    Boxes,
+    Scene,
+    dominance,
+    door_boxes,
+    inner_shares,
+    is_bounded,
+    side_support,
+    surroundings,
+)
+from detector.edges import find_edges
+from detector.parameters import DetectorParameters
+from detector.rectangles import find_lines
+from detector.result import Candidate, DoorSearch, Image, Orthoimage, Rectangle, WallArea
+
+LINE_SHARE = 0.45
+"""Share of the window that a line covers at least: of the shortest side of a door, with occlusion."""
+ALIKE = 0.04
+"""Rectangles whose sides all lie this close are readings of the same door [m]."""
+OPEN_SHARE = 0.15
+"""A rectangle that is looked through over more than this share is open."""
+SHOWN = 200
+"""Rejected candidates that are kept for the record."""
+JUDGED = 80
+"""Candidates that reach the costly conditions at most."""
+
+
+def find_doors(
+    merged: Orthoimage, seen: Image, area: WallArea, height: float, floor: float, parameters: DetectorParameters
+) -> DoorSearch:
+    """Candidate rectangles and the judgement on each.
+
+    Args:
+        seen: (H, W) `Visibility`.
+        height: Height of the wall [m].
+        floor: Height of the floor along v [m].
+    """
+    px = merged.pixel_size
+    edges = find_edges(merged, seen, parameters)
+    floor_row = min(round((height - floor) / px), merged.depth.shape[0])
+    lowest = max(1, floor_row - int(np.ceil(parameters.floor_margin / px)) - 1)
+    scene = Scene(merged, seen, edges, area.mask, floor_row, lowest)
+    vertical = find_lines(edges.upright[:lowest], 0, round(parameters.min_height / px), LINE_SHARE)
+    horizontal = find_lines(edges.level[:lowest], 1, round(parameters.min_width / px), LINE_SHARE)
+    boxes = door_boxes(vertical, horizontal, scene, parameters)
+    return DoorSearch(
+        colour_edges=edges.colour,
+        depth_edges=edges.depth,
+        edges=edges.colour | edges.depth,
+        horizontal_lines=np.rint(horizontal).astype(np.int32),
+        vertical_lines=np.rint(vertical).astype(np.int32),
+        candidates=judge(boxes, scene, height, floor, parameters),
+    )
+
+
+def judge(
+    boxes: Boxes, scene: Scene, height: float, floor: float, parameters: DetectorParameters
+) -> tuple[Candidate, ...]:
+    """The rectangles with the shares that the conditions look at, and the first condition that each fails."""
+    if len(boxes) == 0:
+        return ()
+    support, feet = side_support(boxes, scene, parameters)
+    wall, visible, through = inner_shares(boxes, scene)
+    around = surroundings(boxes, scene)
+    reasons = np.full(len(boxes), None, object)
+    checks = (
+        ("door frame occlusion", support.min(axis=1) < parameters.alpha2),
+        ("location consistency", wall > parameters.alpha3),
+        ("panel occlusion", visible < parameters.min_visible),
+        ("floor", feet.min(axis=1) < FOOT_SUPPORT),
+        ("surroundings", around.min(axis=1) < 0.5),
+    )
+    for name, failed in checks:
+        reasons[(reasons == None) & failed] = name  # noqa: E711 - elementwise
+    survivors = np.flatnonzero(reasons == None)  # noqa: E711 - elementwise
+    survivors = survivors[np.argsort(-support[survivors].sum(axis=1), kind="stable")][:JUDGED]
+    rejected = np.flatnonzero(reasons != None)  # noqa: E711 - elementwise
+    rejected = rejected[np.argsort(-support[rejected].sum(axis=1), kind="stable")][:SHOWN]
+    candidates = []
+    for i in [*survivors, *rejected]:
+        box = boxes[np.array([i])]
+        shares = dominance(box, scene)
+        reason = reasons[i] or _costly_reason(box, scene, float(through[i]), parameters)
+        candidates.append(
+            Candidate(
+                rectangle=_rectangle(box, scene.merged.pixel_size, height, floor),
+                dominant_colour_share=shares.colour_share,
+                dominant_depth_share=shares.depth_share,
+                side_support=tuple(float(s) for s in support[i]),
+                wall_share=float(wall[i]),
+                rejected_by=reason,
+            )
+        )
+    return _smallest(candidates)
+
+
+def _costly_reason(box: Boxes, scene: Scene, through: float, parameters: DetectorParameters) -> str | None:
+    """First failed condition of those that need the pixels themselves."""
+    shares = dominance(box, scene)
+    if min(shares.colour_share, shares.depth_share) < parameters.alpha1:
+        return "colour and depth consistency"
+    if through < OPEN_SHARE and not shares.depth < parameters.max_protrusion:
+        return "protrusion"
+    if not is_bounded(box, scene):
+        return "same on both sides"
+    return None
+
+
+def _rectangle(box: Boxes, pixel_size: float, height: float, floor: float) -> Rectangle:
+    """A box in wall coordinates; it stands on the floor."""
+    left, right, top = (float(x[0] + 0.5) * pixel_size for x in (box.left, box.right, box.top))
+    return Rectangle(left, floor, right, height - top)
+
+
+def _smallest(candidates: list[Candidate]) -> tuple[Candidate, ...]:
+    """Condition 4: of nested rectangles that fulfil the others, the smallest.
+
+    The paper heads this condition "Minimum size" but writes that r must not be contained in another rectangle, which
+    would keep the outline of the frame instead of that of the leaf; the heading is followed. Rectangles a few pixels
+    apart are readings of one door: of those the best supported one stands for all.
+    """
+    accepted = [c for c in candidates if c.rejected_by is None]
+    accepted.sort(key=lambda c: (c.rectangle.area, c.rectangle.left))
+    kept: list[Candidate] = []
+    taken: set[int] = set()
+    for candidate in accepted:
+        if any(_covers(candidate.rectangle, k.rectangle) for k in kept):
+            continue
+        alike = [c for c in accepted if id(c) not in taken and _alike(c.rectangle, candidate.rectangle)]
+        taken.update(id(c) for c in alike)
+        kept.append(max(alike, key=lambda c: (round(sum(c.side_support), 2), -c.rectangle.area)))
+    kept.sort(key=lambda c: c.rectangle.left)
+    losers = [_rejected(c, "minimum size") for c in accepted if not any(c is k for k in kept)]
+    return (*kept, *losers, *(c for c in candidates if c.rejected_by is not None))
+
+
+def _alike(a: Rectangle, b: Rectangle) -> bool:
+    """Whether all sides lie within a few centimetres."""
+    return max(abs(a.left - b.left), abs(a.right - b.right), abs(a.top - b.top)) < ALIKE
+
+
+def _covers(outer: Rectangle, inner: Rectangle) -> bool:
+    """Whether two rectangles claim the same piece of wall."""
+    width = min(outer.right, inner.right) - max(outer.left, inner.left)
+    height = min(outer.top, inner.top) - max(outer.bottom, inner.bottom)
+    return width > 0 and height > 0 and width * height > 0.3 * min(outer.area, inner.area)
+
+
+def _rejected(candidate: Candidate, reason: str) -> Candidate:
+    """The same candidate, rejected."""
+    return Candidate(
+        candidate.rectangle,
+        candidate.dominant_colour_share,
+        candidate.dominant_depth_share,
+        candidate.side_support,
+        candidate.wall_share,
+        reason,
+    )
+
+
+def doorway_rectangles(search: DoorSearch) -> tuple[Rectangle, ...]:
+    """Rectangles of the accepted candidates, from left to right."""
+    return tuple(c.rectangle for c in search.candidates if c.rejected_by is None)

@@ -1,0 +1,135 @@
+"""Discontinuities of colour and depth on a wall (section 6.2, figure 9)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from detector.openings import Visibility
+from detector.orthoimage import nearest
+from detector.parameters import DetectorParameters
+from detector.result import Image, Mask, Orthoimage
+
+ALONG_PX = 15
+"""Smoothing along a hypothetical side: sides are upright or level (section 5), so it blurs noise, not edges."""
+NOISE_FACTOR = 5.0
+"""A gradient below this many times the wall's median is texture."""
+GRADIENT_STEPS = 1000
+"""Grey values per unit of gradient for Otsu's histogram; stronger gradients than 0.255 count as that."""
+CREASE_PX = 6
+"""Half length over which a change of slope is measured."""
+CREASE = 0.005
+"""Deviation from a straight depth profile that is a crease [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """Discontinuities by kind and by direction, each (H, W)."""
+
+    colour: Mask
+    """J'_C."""
+    depth: Mask
+    """J'_D."""
+    upright: Mask
+    """Those of J'_CD that can lie on a vertical side."""
+    level: Mask
+    """Those that can lie on a horizontal side."""
+
+
+def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) -> Edges:
+    """J'_C, J'_D, and their union by direction.
+
+    Args:
+        seen: (H, W) `Visibility`; the edge of a shadow is no edge of the wall.
+    """
+    dx, dy = colour_derivatives(merged)
+    gradient = di_zenzo(dx, dy)
+    colour = (gradient > colour_threshold(gradient, merged.coloured, parameters)) & merged.coloured
+    across = (dx**2).sum(axis=2) >= (dy**2).sum(axis=2)
+    depth, depth_across = depth_edges(merged.depth, seen, parameters)
+    return Edges(
+        colour, depth, (colour & across) | (depth & depth_across), (colour & ~across) | (depth & ~depth_across)
+    )
+
+
+def colour_derivatives(merged: Orthoimage) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """(H, W, 3) change of the colour (0..1) per pixel along the columns and down the rows."""
+    colour = nearest(merged.colour, merged.coloured).astype(np.float32) / 255
+    return _derivatives(colour)
+
+
+def _derivatives(image: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Central differences, each of the image smoothed along the other direction."""
+    kernel = np.array([[-0.5, 0.0, 0.5]], np.float32)
+    upright = cv2.blur(image, (1, ALONG_PX))
+    level = cv2.blur(image, (ALONG_PX, 1))
+    replicate = cv2.BORDER_REPLICATE
+    return (
+        cv2.filter2D(upright, cv2.CV_32F, kernel, borderType=replicate),
+        cv2.filter2D(level, cv2.CV_32F, kernel.T, borderType=replicate),
+    )
+
+
+def di_zenzo(dx: NDArray[np.float32], dy: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(H, W) largest rate of change of a vector image: root of the greater eigenvalue of its structure tensor [27]."""
+    e, f, g = (dx * dx).sum(axis=2), (dx * dy).sum(axis=2), (dy * dy).sum(axis=2)
+    return np.sqrt((e + g + np.sqrt((e - g) ** 2 + 4 * f * f)) / 2)
+
+
+def colour_threshold(gradient: NDArray[np.float32], coloured: Mask, parameters: DetectorParameters) -> float:
+    """Otsu's threshold; capped, so that a strong poster does not hide a faint door, but never in the noise."""
+    values = gradient[coloured]
+    if len(values) == 0:
+        return np.inf
+    grey = np.minimum(values * GRADIENT_STEPS, 255).astype(np.uint8)
+    otsu = cv2.threshold(grey[:, None], 0, 255, cv2.THRESH_OTSU)[0] / GRADIENT_STEPS
+    if parameters.colour_threshold == "otsu":
+        return float(otsu)
+    return float(max(min(otsu, parameters.colour_edge_cap), NOISE_FACTOR * float(np.median(values))))
+
+
+def depth_edges(depth: NDArray[np.float32], seen: Image, parameters: DetectorParameters) -> tuple[Mask, Mask]:
+    """Canny's edges of the depth, with the creases where a leaf leaves the wall's plane.
+
+    Holes count as deep as the slab reaches; shadows and gaps take the depth of the nearest point, so that they have no
+    edge of their own.
+
+    Returns:
+        (H, W) the edges, and (H, W) True where the depth changes along the columns rather than down the rows.
+    """
+    data, through = np.isfinite(depth), seen == Visibility.THROUGH
+    known = np.where(through, np.float32(-parameters.slab_behind), depth)
+    filled = nearest(known, data | through)
+    if not (data | through).any():
+        return np.zeros_like(data), np.zeros_like(data)
+    dx, dy = _derivatives(filled)
+    scale = 10_000.0  # derivatives in units of 0.1 mm, as 16-bit integers for Canny
+    high = parameters.depth_edge / 2 * scale  # a central difference sees half a step
+    found = cv2.Canny(
+        *(np.clip(np.rint(d * scale), -32000, 32000).astype(np.int16) for d in (dx, dy)),
+        high / 2,
+        high,
+        L2gradient=True,
+    )
+    steps = found > 0
+    creases_x, creases_y = (_creases(filled, axis, steps) for axis in (1, 0))
+    near_data = cv2.dilate(data.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
+    across = np.where(steps, np.abs(dx) >= np.abs(dy), creases_x)
+    return (steps | creases_x | creases_y) & near_data, across
+
+
+def _creases(depth: NDArray[np.float32], axis: int, steps: Mask) -> Mask:
+    """(H, W) True on the ridge of the change of slope along an axis (1: along the columns), away from steps."""
+    size = (1, 3 * ALONG_PX) if axis == 1 else (3 * ALONG_PX, 1)
+    kernel = np.zeros(2 * CREASE_PX + 1, np.float32)
+    kernel[[0, CREASE_PX, -1]] = -0.5, 1.0, -0.5
+    kernel = cv2.blur(kernel[None], (3, 1), borderType=cv2.BORDER_CONSTANT)
+    shape = kernel if axis == 1 else kernel.T
+    bend = np.abs(cv2.filter2D(cv2.blur(depth, size), cv2.CV_32F, shape, borderType=cv2.BORDER_REPLICATE))
+    ridge = cv2.dilate(bend, np.ones((1, 5) if axis == 1 else (5, 1), np.uint8))
+    reach = 2 * CREASE_PX + 1
+    near_step = cv2.dilate(steps.astype(np.uint8), np.ones((reach, reach), np.uint8)) > 0
+    return (bend > CREASE) & (bend == ridge) & ~near_step

@@ -1,0 +1,133 @@
+"""From a doorway to a door: its kind, its leaves and their state (sections 6 and 6.3)."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from detector.angle import fit_leaf, slope_in_doorway
+from detector.openings import Visibility
+from detector.parameters import DetectorParameters
+from detector.result import Door, Image, Leaf, Orthoimage, Rectangle
+
+MAX_LEAF = 1.3
+"""Widest single leaf [m]; wider doorways have two."""
+CLOSED_SHARE = 0.6
+"""Share of a doorway's columns that a closed leaf fills at least."""
+SLIDING_SHARE = 0.12
+"""Share of a doorway that the visible part of a sliding leaf fills at least."""
+RIGHT_ANGLE = np.deg2rad(90.0)
+NO_POINTS = np.zeros((0, 2), np.float32)
+
+
+def describe_door(
+    doorway: Rectangle,
+    merged: Orthoimage,
+    seen: Image,
+    points: NDArray[np.float32],
+    height: float,
+    parameters: DetectorParameters,
+) -> Door:
+    """Kind, state and leaves of the door in a doorway.
+
+    An open doorway in which no leaf was seen keeps one leaf with an angle of NaN, and counts as open.
+
+    Args:
+        points: (N, 3) points round the doorway in wall coordinates [m].
+        height: Height of the wall [m].
+    """
+    if _is_closed(doorway, merged, height, parameters):
+        return Door(doorway, "single", "closed", (closed_leaf(),))
+    left, right = (fit_leaf(points, doorway, side, parameters) for side in ("left", "right"))
+    single = max((fit for fit in (left, right) if fit is not None), key=lambda fit: fit[1], default=None)
+    double = _double(doorway, merged, points, height, parameters)
+    if double is not None and (doorway.width > MAX_LEAF or single is None):
+        return Door(doorway, "double", _state(double), double)
+    if single is not None:
+        return Door(doorway, "single", _state((single[0],)), (single[0],))
+    if _slides(doorway, merged, seen, height, parameters):
+        return Door(doorway, "sliding", "semi-open", (closed_leaf(),))
+    missing = Leaf("none", float("nan"), float("nan"), None, NO_POINTS)
+    return Door(doorway, "single", "open", (missing,))
+
+
+def closed_leaf() -> Leaf:
+    """A leaf in the wall's plane."""
+    return Leaf("none", 0.0, 0.0, None, NO_POINTS)
+
+
+def join_leaves(doors: list[Door]) -> list[Door]:
+    """Neighbouring doors of one height that share a side, as one double door; doors from left to right."""
+    result: list[Door] = []
+    for door in doors:
+        before = result[-1] if result else None
+        if before is not None and _is_pair(before, door):
+            a, b = before.rectangle, door.rectangle
+            whole = Rectangle(a.left, min(a.bottom, b.bottom), b.right, (a.top + b.top) / 2)
+            leaves = (*before.leaves, *door.leaves)
+            result[-1] = Door(whole, "double", _state(leaves), leaves)
+        else:
+            result.append(door)
+    return result
+
+
+def _is_pair(a: Door, b: Door) -> bool:
+    """Whether two doors are the leaves of one."""
+    gap = b.rectangle.left - a.rectangle.right
+    level = abs(a.rectangle.top - b.rectangle.top) < 0.03
+    return abs(gap) < 0.04 and level and a.kind == b.kind == "single"
+
+
+def _is_closed(doorway: Rectangle, merged: Orthoimage, height: float, parameters: DetectorParameters) -> bool:
+    """Whether a plane parallel to the wall fills the doorway."""
+    angle, _, share = slope_in_doorway(merged.depth, doorway, height, merged.pixel_size)
+    return share >= CLOSED_SHARE and abs(angle) < parameters.closed_angle
+
+
+def _double(
+    doorway: Rectangle, merged: Orthoimage, points: NDArray, height: float, parameters: DetectorParameters
+) -> tuple[Leaf, Leaf] | None:
+    """Two leaves that meet in the middle, one of which may be closed."""
+    if doorway.width < 2 * parameters.min_width:
+        return None
+    middle = (doorway.left + doorway.right) / 2
+    leaves: list[Leaf] = []
+    sides: tuple[Literal["left", "right"], ...] = ("left", "right")
+    for side in sides:
+        low, high = (doorway.left, middle) if side == "left" else (middle, doorway.right)
+        half = Rectangle(low, doorway.bottom, high, doorway.top)
+        if _is_closed(half, merged, height, parameters):
+            leaves.append(closed_leaf())
+            continue
+        fit = fit_leaf(points, half, side, parameters)
+        if fit is None:
+            return None
+        leaves.append(fit[0])
+    return leaves[0], leaves[1]
+
+
+def _slides(doorway: Rectangle, merged: Orthoimage, seen: Image, height: float, parameters: DetectorParameters) -> bool:
+    """Whether part of the doorway is filled by a plane parallel to the wall and part is open."""
+    px = merged.pixel_size
+    cut = np.s_[
+        int((height - doorway.top + 0.05) / px) : int((height - doorway.bottom - 0.1) / px),
+        int((doorway.left + 0.02) / px) : int((doorway.right - 0.02) / px),
+    ]
+    data = (seen[cut] == Visibility.DATA).mean(axis=0) > 0.7
+    through = float((seen[cut] == Visibility.THROUGH).mean())
+    columns = np.flatnonzero(data)
+    if len(columns) < SLIDING_SHARE * data.size or through < SLIDING_SHARE:
+        return False
+    medians = np.nanmedian(merged.depth[cut][:, columns], axis=0)
+    slope = np.polyfit(columns * px, medians, 1)[0]
+    return abs(np.arctan(slope)) < 2 * parameters.closed_angle and np.ptp(columns) < 1.2 * len(columns)
+
+
+def _state(leaves: tuple[Leaf, ...]) -> Literal["closed", "semi-open", "open"]:
+    """State by the widest leaf (section 6)."""
+    widest = max(leaf.opening_angle for leaf in leaves)
+    if widest == 0:
+        return "closed"
+    return "open" if widest >= RIGHT_ANGLE else "semi-open"

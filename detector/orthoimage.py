@@ -1,0 +1,194 @@
+"""One 4D orthoimage of a wall for each scanning location (section 4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from detector.parameters import DetectorParameters
+from detector.result import Mask, Orthoimage
+from detector.room import DetectorError, View, Wall
+
+LEAF_REACH = 1.7
+"""How far from the wall an open leaf can stand [m]."""
+THINNED_TO = 1_200_000
+"""Points of a view that are enough for shadows and leaves."""
+MAX_PASSED = 3_000_000
+"""Points behind the wall that are enough to outline its holes."""
+
+
+@dataclass(frozen=True, eq=False)
+class WallPoints:
+    """What one view knows about one wall, in the wall's coordinates (along u, along v, depth into the room) [m]."""
+
+    slab: NDArray[np.float32]
+    """(M, 3) points within the wall's slab."""
+    colours: NDArray[np.uint8]
+    """(M, 3) sRGB of the slab's points."""
+    coloured: NDArray[np.bool_]
+    """(M,) True where the colour is known."""
+    passed: NDArray[np.float32]
+    """(K, 2) where beams that ended behind the wall's face crossed it, along u and v."""
+    blocked: NDArray[np.float32]
+    """(K, 2) where beams that ended well before the wall would have met it; thinned."""
+    around: NDArray[np.float32]
+    """(L, 3) points up to a leaf's width from the wall, on both sides; thinned before it."""
+    scanner: NDArray[np.float64]
+    """(3,) origin of the beams."""
+    camera: NDArray[np.float64]
+    """(3,) centre of the camera."""
+
+
+def image_shape(wall: Wall, parameters: DetectorParameters) -> tuple[int, int]:
+    """Rows and columns of a wall's images.
+
+    Raises:
+        DetectorError: The wall is empty or has more than `max_pixels` pixels.
+    """
+    for name, value in (("width", wall.width), ("height", wall.height)):
+        if not (np.isfinite(value) and value > 0):
+            raise DetectorError(f"Wall.{name}: expected a positive length, got {value}")
+    rows, columns = (
+        max(1, int(np.ceil(extent / parameters.pixel_size - 1e-9))) for extent in (wall.height, wall.width)
+    )
+    if rows * columns > parameters.max_pixels:
+        raise DetectorError(
+            f"pixel_size: {parameters.pixel_size} m makes {rows} x {columns} pixels of a wall of "
+            f"{wall.width:.2f} x {wall.height:.2f} m; at most {parameters.max_pixels} are accepted (max_pixels)"
+        )
+    return rows, columns
+
+
+def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -> WallPoints | None:
+    """The points of a view that concern a wall.
+
+    Args:
+        floor: Height of the floor along v [m].
+
+    Returns:
+        None where the view stands behind the wall or has no point in its slab.
+    """
+    scanner, camera = wall.wall_from_world(np.stack([view.scanner_in_world, view.camera_in_world]).astype(np.float64))
+    if not scanner[2] > parameters.slab_front:
+        return None
+    points = view.points_in_world
+    depth = points @ wall.normal.astype(np.float32) - np.float32(wall.origin @ wall.normal)
+    near = np.flatnonzero((depth > -parameters.slab_behind) & (depth < parameters.slab_front))
+    slab = wall.wall_from_world(points[near])
+    inside = _inside(slab, wall) & (slab[:, 1] >= floor + parameters.floor_margin)
+    if not inside.any():
+        return None
+    near, slab = near[inside], slab[inside]
+    behind = np.flatnonzero(depth < -parameters.face_tolerance)
+    behind = wall.wall_from_world(points[behind[:: 1 + len(behind) // MAX_PASSED]])
+    thinned = wall.wall_from_world(points[:: 1 + 2 * (len(points) // (2 * THINNED_TO))])
+    front = thinned[(thinned[:, 2] > parameters.slab_front) & (thinned[:, 2] < 0.98 * scanner[2])]
+    reach = (np.abs(thinned[:, 2]) < LEAF_REACH) & (thinned[:, 0] > -LEAF_REACH)
+    reach &= (thinned[:, 0] < wall.width + LEAF_REACH) & (thinned[:, 1] > floor + 0.1)
+    beyond = behind[(behind[:, 2] > -LEAF_REACH) & (behind[:, 1] > floor + 0.1)]
+    return WallPoints(
+        slab=slab,
+        colours=view.colours[near],
+        coloured=view.coloured[near],
+        passed=_crossings(behind, scanner, wall),
+        blocked=_crossings(front, scanner, wall),
+        around=np.concatenate([thinned[reach & (thinned[:, 2] >= -parameters.face_tolerance)], beyond]),
+        scanner=scanner,
+        camera=camera,
+    )
+
+
+def _inside(points: NDArray[np.float32], wall: Wall) -> NDArray[np.bool_]:
+    """(N,) True over the wall's rectangle."""
+    u, v = points[:, 0], points[:, 1]
+    return (u >= 0) & (u < wall.width) & (v >= 0) & (v < wall.height)
+
+
+def _crossings(points: NDArray[np.float32], scanner: NDArray[np.float64], wall: Wall) -> NDArray[np.float32]:
+    """(K, 2) where the beams to the points meet the wall's plane, of those that meet its rectangle."""
+    origin = scanner.astype(np.float32)
+    along = origin[2] / (origin[2] - points[:, 2])
+    crossings = origin[:2] + along[:, None] * (points[:, :2] - origin[:2])
+    return crossings[_inside(crossings, wall)]
+
+
+def pixels(points: NDArray[np.float32], wall: Wall, shape: tuple[int, int], pixel_size: float) -> NDArray[np.int64]:
+    """(N,) flat index of the pixel that holds each point of the wall's rectangle."""
+    columns = np.minimum((points[:, 0] / pixel_size).astype(np.int64), shape[1] - 1)
+    rows = np.clip(((wall.height - points[:, 1]) / pixel_size).astype(np.int64), 0, shape[0] - 1)
+    return rows * shape[1] + columns
+
+
+def orthoimage(points: WallPoints, wall: Wall, gap_px: int, parameters: DetectorParameters) -> Orthoimage:
+    """The 4D orthoimage J_CD^k of one view: mean colour and maximum depth of the points in each pixel.
+
+    Gaps between the samples of the view are closed with the nearest pixel's values, as wide as the sampling asks for.
+
+    Args:
+        gap_px: Widest gap between neighbouring samples [px], from `sampling_gap`.
+    """
+    shape = image_shape(wall, parameters)
+    index = pixels(points.slab, wall, shape, parameters.pixel_size)
+    size = shape[0] * shape[1]
+    depth = np.full(size, -np.inf, np.float32)
+    np.maximum.at(depth, index, points.slab[:, 2])
+    index, colours = index[points.coloured], points.colours[points.coloured]
+    counts = np.bincount(index, minlength=size)
+    sums = np.stack([np.bincount(index, colours[:, i], size) for i in range(3)], axis=1)
+    colour = np.rint(sums / np.maximum(counts, 1)[:, None]).astype(np.uint8).reshape(*shape, 3)
+    depth = np.where(np.isfinite(depth), depth, np.nan).reshape(shape)
+    coloured = (counts > 0).reshape(shape)
+    filled = close_gaps(np.isfinite(depth), gap_px)
+    filled_colour = close_gaps(coloured, gap_px) & filled
+    depth = np.where(filled, nearest(depth, np.isfinite(depth)), np.float32(np.nan))
+    colour = np.where(filled_colour[..., None], nearest(colour, coloured), np.uint8(0))
+    return Orthoimage(colour, filled_colour, depth, parameters.pixel_size)
+
+
+def sampling_gap(points: WallPoints, parameters: DetectorParameters) -> int:
+    """Widest gap between neighbouring samples on the wall [px], from the density of the points themselves.
+
+    The angular step is the root of the solid angle per point, taken over blocks of 8 x 8 pixels; on the wall it grows
+    with the square of the range over the distance from the wall.
+    """
+    block = 8 * parameters.pixel_size
+    cells = (points.slab[:, :2] / block).astype(np.int64)
+    keys, counts = np.unique(cells[:, 0] * 100_000 + cells[:, 1], return_counts=True)
+    centres = (np.stack([keys // 100_000, keys % 100_000], axis=1) + 0.5) * block
+    distance = points.scanner[2]
+    ranges = np.sqrt(((centres - points.scanner[:2]) ** 2).sum(axis=1) + distance**2)
+    step = np.sqrt(np.median(block**2 * distance / ranges**3 / counts))
+    spacing = np.quantile(step * ranges**2 / distance, 0.8)
+    return int(np.clip(np.ceil(1.5 * spacing / parameters.pixel_size), 1, parameters.max_gap_px))
+
+
+def close_gaps(mask: Mask, gap_px: int) -> Mask:
+    """The mask with gaps up to `gap_px` pixels closed; straight borders stay where they are."""
+    kernel = np.ones((gap_px + 1 + gap_px % 2,) * 2, np.uint8)
+    padded = cv2.copyMakeBorder(mask.astype(np.uint8), *(gap_px + 1,) * 4, cv2.BORDER_CONSTANT, value=0)
+    closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, kernel)
+    return closed[gap_px + 1 : -gap_px - 1, gap_px + 1 : -gap_px - 1] > 0
+
+
+def nearest(image: NDArray, known: Mask) -> NDArray:
+    """The image with every unknown pixel replaced by the nearest known one; unchanged where none is known."""
+    if known.all() or not known.any():
+        return image
+    _, labels = cv2.distanceTransformWithLabels(
+        (~known).astype(np.uint8), cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    source = np.zeros(labels.max() + 1, np.int64)
+    source[labels[known]] = np.flatnonzero(known)
+    flat = image.reshape(known.size, -1)
+    return flat[source[labels.ravel()]].reshape(image.shape)
+
+
+def mark(crossings: NDArray[np.float32], wall: Wall, gap_px: int, parameters: DetectorParameters) -> Mask:
+    """(H, W) True where crossings fell, with the gaps between samples closed."""
+    shape = image_shape(wall, parameters)
+    mask = np.zeros(shape[0] * shape[1], bool)
+    mask[pixels(crossings, wall, shape, parameters.pixel_size)] = True
+    return close_gaps(mask.reshape(shape), gap_px)

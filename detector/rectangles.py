@@ -1,0 +1,78 @@
+"""Lateral histograms, the straight lines in them, and the rectangles between the lines (sections 5 and 6.2)."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from detector.result import Mask
+
+TOLERANCE_PX = 1
+"""A line may wander this far to either side."""
+SEPARATION_PX = 3
+"""Lines closer than this are one."""
+
+
+def lateral_histogram(edges: Mask, axis: int, window_px: int) -> NDArray[np.float32]:
+    """Share of edge pixels along each column (axis 0) or row (axis 1), in the best window.
+
+    A histogram over the whole wall drowns the top of one door in the texture of the rest; the window is as long as the
+    shortest side of a door, and slides along the line.
+
+    Returns:
+        (W,) or (H,) shares in [0, 1].
+    """
+    image = edges.astype(np.float32)
+    window = min(window_px, image.shape[axis])
+    size = (1, window) if axis == 0 else (window, 1)  # OpenCV's order is width, height
+    shares = cv2.boxFilter(image, -1, size, borderType=cv2.BORDER_CONSTANT)
+    return shares.max(axis=axis)
+
+
+def find_lines(edges: Mask, axis: int, window_px: int, share: float, limit: int = 80) -> NDArray[np.float64]:
+    """Positions of the vertical (axis 0) or horizontal (axis 1) lines, as peaks of the lateral histogram.
+
+    Args:
+        share: Least share of the window that a line covers.
+        limit: Most lines that are returned, the strongest ones.
+
+    Returns:
+        (L,) columns or rows, ascending; whole numbers are pixel centres.
+    """
+    across = (2 * TOLERANCE_PX + 1, 1) if axis == 0 else (1, 2 * TOLERANCE_PX + 1)
+    wide = cv2.dilate(edges.astype(np.uint8), np.ones(across[::-1], np.uint8)) > 0
+    covered, sharp = lateral_histogram(wide, axis, window_px), lateral_histogram(edges, axis, window_px)
+    strength = np.convolve(sharp, [0.5, 1.0, 0.5], mode="same")
+    taken, lines = np.zeros(len(sharp), bool), []
+    for peak in np.argsort(-strength, kind="stable"):
+        if len(lines) == limit:
+            break
+        if covered[peak] < share or taken[peak] or strength[peak] == 0:
+            continue
+        taken[max(0, peak - SEPARATION_PX + 1) : peak + SEPARATION_PX] = True
+        low = max(0, peak - TOLERANCE_PX)
+        weights = sharp[low : peak + TOLERANCE_PX + 1]
+        lines.append(float((np.arange(low, low + len(weights)) * weights).sum() / weights.sum()))
+    return np.sort(np.array(lines, np.float64))
+
+
+def pairs(lines: NDArray[np.float64], shortest: float, longest: float) -> NDArray[np.int64]:
+    """(P, 2) indices of the pairs of ascending lines whose distance lies in the range."""
+    i, j = np.triu_indices(len(lines), 1)
+    distance = lines[j] - lines[i]
+    return np.stack([i, j], axis=1)[(distance >= shortest) & (distance <= longest)]
+
+
+def integral(mask: NDArray) -> NDArray[np.int64]:
+    """(H + 1, W + 1) sums over all pixels above and to the left."""
+    sums = np.zeros((mask.shape[0] + 1, mask.shape[1] + 1), np.int64)
+    sums[1:, 1:] = mask.astype(np.int64).cumsum(axis=0).cumsum(axis=1)
+    return sums
+
+
+def box_sums(sums: NDArray[np.int64], boxes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(N,) sums over boxes (N, 4) of top, left, bottom, right, half open, clipped to the image."""
+    top, bottom = (np.clip(boxes[:, i], 0, sums.shape[0] - 1) for i in (0, 2))
+    left, right = (np.clip(boxes[:, i], 0, sums.shape[1] - 1) for i in (1, 3))
+    return sums[bottom, right] - sums[top, right] - sums[bottom, left] + sums[top, left]

@@ -1,0 +1,163 @@
+"""The visible part of the wall, from coherent seeds of colour and depth (section 6.1)."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from detector.parameters import DetectorParameters
+from detector.result import Mask, Orthoimage, WallArea
+
+RESTARTS = 3
+ITERATIONS = 40
+COLOUR_SLACK = 0.02
+"""Least half width of a cluster's box in each colour, of 1."""
+DEPTH_SLACK = 0.012
+"""Least half width of a cluster's box in depth [m]: 4 sigma of the scanner."""
+ONE_COLOUR = 0.03
+"""Standard deviation below which all seeds are one cluster, of 1."""
+BORDER_PX = 8
+"""Width of the left, right and top borders that the wall shows on."""
+
+
+def find_wall_area(merged: Orthoimage, parameters: DetectorParameters) -> WallArea:
+    """Pixels that belong to the wall, by the three steps of section 6.1. Without any colour, depth decides alone."""
+    values = rgbd(merged, parameters)
+    known = np.isfinite(merged.depth) & (merged.coloured | ~merged.coloured.any())
+    seeds, means = coherent_seeds(values, known, parameters)
+    if len(seeds) == 0:
+        nothing = np.zeros(known.shape, np.int32)
+        return WallArea(seeds, np.zeros(0, np.int32), nothing, nothing > 0)
+    assigned = adaptive_kmeans(means, parameters)
+    if assigned.max() > 1:
+        # The paper removes seeds whose |silhouette| is *higher* than delta, which would throw away the consistent ones
+        # that the step is to keep; read as: keep s >= delta.
+        kept = np.where(silhouettes(means, assigned) >= parameters.delta, assigned, 0)
+    else:
+        kept = assigned
+    clusters = segment(values, known, means, kept, parameters)
+    return WallArea(seeds, kept, clusters, clusters == _wall_cluster(clusters) if clusters.any() else clusters > 0)
+
+
+def rgbd(merged: Orthoimage, parameters: DetectorParameters) -> NDArray[np.float32]:
+    """(H, W, 4) colour in 0..1 and depth over `depth_scale`: four components that count alike."""
+    depth = np.nan_to_num(merged.depth) / np.float32(parameters.depth_scale)
+    return np.dstack([merged.colour.astype(np.float32) / 255, depth.astype(np.float32)])
+
+
+def coherent_seeds(
+    values: NDArray[np.float32], known: Mask, parameters: DetectorParameters
+) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    """Regularly sampled patches whose four components hardly vary.
+
+    Returns:
+        (S, 2) row and column of the top left pixels, and (S, 4) mean values.
+    """
+    side = parameters.seed_size
+    rows, columns = known.shape[0] // side, known.shape[1] // side
+    shape = (rows, side, columns, side)
+    cut = np.s_[: rows * side, : columns * side]
+    full = known[cut].reshape(shape).all(axis=(1, 3))
+    patches = values[cut].reshape(*shape, 4)
+    coherent = full & (patches.std(axis=(1, 3)) <= parameters.sigma_max).all(axis=2)
+    stride = max(1, int(np.sqrt(coherent.sum() / parameters.max_seeds)))
+    regular = np.zeros_like(coherent)
+    regular[::stride, ::stride] = True
+    chosen = np.argwhere(coherent & regular)
+    return (chosen * side).astype(np.int32), patches.mean(axis=(1, 3))[chosen[:, 0], chosen[:, 1]]
+
+
+def adaptive_kmeans(means: NDArray[np.float32], parameters: DetectorParameters) -> NDArray[np.int32]:
+    """(S,) cluster of each seed, from 1; the number of clusters is the one with the best mean silhouette."""
+    one = np.ones(len(means), np.int32)
+    if len(means) < 4 or (means.std(axis=0) < ONE_COLOUR).all():
+        return one
+    best, best_score = one, parameters.min_silhouette
+    distances = _distances(means, means)
+    for k in range(2, min(parameters.max_clusters, len(means) - 1) + 1):
+        assigned = kmeans(means, k)
+        if len(np.unique(assigned)) == k:
+            score = float(silhouettes(means, assigned, distances).mean())
+            if score > best_score + 1e-6:
+                best, best_score = assigned, score
+    return best
+
+
+def kmeans(samples: NDArray[np.float32], k: int) -> NDArray[np.int32]:
+    """(S,) cluster of each sample, from 1: Lloyd's algorithm from the best of a few fixed k-means++ starts."""
+    best, best_cost = np.ones(len(samples), np.int32), np.inf
+    for start in range(RESTARTS):
+        rng = np.random.default_rng(start)
+        centres = samples[[rng.integers(len(samples))]]
+        while len(centres) < k:
+            nearest = _distances(samples, centres).min(axis=1).astype(np.float64) ** 2
+            if nearest.sum() == 0:
+                break
+            centres = np.vstack([centres, samples[[rng.choice(len(samples), p=nearest / nearest.sum())]]])
+        assigned = _distances(samples, centres).argmin(axis=1)
+        for _ in range(ITERATIONS):
+            counts = np.bincount(assigned, minlength=len(centres))
+            sums = np.stack(
+                [np.bincount(assigned, samples[:, i], len(centres)) for i in range(samples.shape[1])], axis=1
+            )
+            centres = np.where(counts[:, None] > 0, sums / np.maximum(counts, 1)[:, None], centres).astype(np.float32)
+            before, assigned = assigned, _distances(samples, centres).argmin(axis=1)
+            if np.array_equal(before, assigned):
+                break
+        cost = float((_distances(samples, centres).min(axis=1) ** 2).sum())
+        if cost < best_cost - 1e-9:
+            best, best_cost = assigned.astype(np.int32) + 1, cost
+    return best
+
+
+def silhouettes(samples: NDArray, assigned: NDArray[np.int32], distances: NDArray | None = None) -> NDArray[np.float64]:
+    """(S,) silhouette (b - a) / max(a, b) of each sample; 0 for one that is alone in its cluster."""
+    distances = _distances(samples, samples) if distances is None else distances
+    numbers = np.unique(assigned)
+    members = (assigned[:, None] == numbers).astype(np.float32)
+    counts = members.sum(axis=0)
+    sums = distances @ members
+    own = members > 0
+    a = sums[own] / np.maximum(counts[own.argmax(axis=1)] - 1, 1)
+    b = np.where(own, np.inf, sums / counts).min(axis=1)
+    alone = counts[own.argmax(axis=1)] == 1
+    return np.where(alone, 0.0, (b - a) / np.maximum(np.maximum(a, b), 1e-12)).astype(np.float64)
+
+
+def segment(
+    values: NDArray[np.float32], known: Mask, means: NDArray, kept: NDArray[np.int32], parameters: DetectorParameters
+) -> NDArray[np.int32]:
+    """(H, W) cluster of each pixel by thresholds on all four components; exclusive: the nearer cluster if two match."""
+    smooth = cv2.blur(values, (3, 3))
+    slack = np.array([COLOUR_SLACK] * 3 + [DEPTH_SLACK / parameters.depth_scale], np.float32)
+    best, result = np.full(known.shape, np.inf, np.float32), np.zeros(known.shape, np.int32)
+    for number in range(1, kept.max(initial=0) + 1):
+        members = means[kept == number]
+        if len(members) == 0:
+            continue
+        low, centre, high = np.quantile(members, [0.01, 0.5, 0.99], axis=0).astype(np.float32)
+        matches = known & (smooth >= low - slack).all(axis=2) & (smooth <= high + slack).all(axis=2)
+        distance = np.where(matches, ((smooth - centre) ** 2).sum(axis=2), np.inf)
+        nearer = distance < best
+        best[nearer], result[nearer] = distance[nearer], number
+    return result
+
+
+def _wall_cluster(clusters: NDArray[np.int32]) -> int:
+    """The cluster with the most pixels on the left, right and top borders; of all pixels if the borders are empty."""
+    borders = [clusters[:, :BORDER_PX], clusters[:, -BORDER_PX:], clusters[:BORDER_PX]]
+    counts = np.bincount(np.concatenate([b.ravel() for b in borders]), minlength=clusters.max() + 1)
+    counts[0] = 0
+    if counts.sum() == 0:
+        counts = np.bincount(clusters.ravel())
+        counts[0] = 0
+    return int(counts.argmax())
+
+
+def _distances(a: NDArray, b: NDArray) -> NDArray[np.float32]:
+    """(N, M) Euclidean distances, summed component by component so that the order of summation is fixed."""
+    squares = np.zeros((len(a), len(b)), np.float32)
+    for i in range(a.shape[1]):
+        squares += (a[:, i, None] - b[None, :, i]) ** 2
+    return np.sqrt(squares)
