@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from sim.noise import normal_noise
 from sim.render import Depth, Renderer, View, looking_along
 from sim.render.materials import linear_from_srgb, materials_of, srgb_from_linear
 from sim.shading import Gloss, Image, Light, Window, flash_light, seen_from_flash
@@ -165,14 +166,18 @@ class Camera:
 
     def _develop(self, exposed: _Exposure, gain: float, scanner_from_camera: NDArray[np.float64], seed: int) -> Photo:
         """Sensor and raw converter: photons, noise, clipping, 12 bit, sRGB."""
-        signal = exposed.albedo * exposed.light.diffuse[..., None] + exposed.light.gloss[..., None]
-        signal *= np.float32(gain)
+        signal = exposed.albedo * cv2.merge([exposed.light.diffuse * np.float32(gain)] * 3)
+        signal += cv2.merge([exposed.light.gloss * np.float32(gain)] * 3)
         if self.parameters.noise:  # photon noise of more than a few electrons is normal
-            sigma = np.sqrt(signal * np.float32(1 / FULL_WELL) + np.float32((READ_NOISE / FULL_WELL) ** 2))
-            sigma *= np.random.default_rng(seed).standard_normal(signal.shape, np.float32)
+            sigma = signal * np.float32(1 / FULL_WELL)
+            sigma += np.float32((READ_NOISE / FULL_WELL) ** 2)
+            np.sqrt(sigma, out=sigma)
+            sigma *= normal_noise(seed, signal.shape)
             signal += sigma
         np.clip(signal, 0, 1, out=signal)
-        image = _SRGB[np.rint(signal * np.float32(_LEVELS - 1)).astype(np.uint16)]
+        signal *= np.float32(_LEVELS - 1)
+        signal += np.float32(0.5)
+        image = _SRGB.take(signal.astype(np.uint16))
         highlights = exposed.light.gloss * np.float32(gain) > self.parameters.highlight_level
         focal_x, focal_y = self.parameters.focal_px
         height, width = highlights.shape

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from sim.noise import normal_noise
 from sim.render import Renderer, View, looking_along
 from sim.render.jumps import blocks_across_jumps
 from sim.render.materials import materials_of
@@ -254,9 +255,7 @@ def _measure(
         rows = slice(number * _BAND, min((number + 1) * _BAND, pattern.rows))
         spread = _incidence_tan2(inverse_range, rows, cos_elevations[rows], 2 * np.pi / pattern.columns)
         reflectance = albedo_db[rows] - np.float32(5 / np.log(10)) * np.log1p(spread)  # 10 log10(rho cos i)
-        ranges[rows], albedo_db[rows] = _deliver(
-            1 / inverse_range[rows], reflectance, parameters, np.random.default_rng(int(seeds[number]))
-        )
+        ranges[rows], albedo_db[rows] = _deliver(1 / inverse_range[rows], reflectance, parameters, int(seeds[number]))
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:  # a seed a band: no result depends on who works it out
         list(pool.map(band, range(len(seeds))))
@@ -290,17 +289,19 @@ def _deliver(
     ranges: NDArray[np.float32],
     reflectance: NDArray[np.float32],
     parameters: ScannerParameters,
-    rng: np.random.Generator,
+    seed: int,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Adds the noise and drops what is too near, too far or too dark to return."""
     amplitude = np.exp(reflectance * np.float32(np.log(10) / 20))  # root of the signal
     reach = amplitude * np.float32(parameters.range_max / np.sqrt(WHITE_REFLECTANCE))
     if parameters.noise:
         loss = np.clip(np.float32(np.sqrt(WEAK_RETURN)) / amplitude, 1, WORST_PRECISION)
-        loss *= rng.standard_normal(ranges.shape, np.float32)
+        noise = normal_noise(seed, (2, *ranges.shape))
+        loss *= noise[0]
         loss *= np.float32(parameters.precision)
         ranges += loss
-        reflectance += rng.standard_normal(ranges.shape, np.float32) * np.float32(REFLECTANCE_NOISE_DB)
+        noise[1] *= np.float32(REFLECTANCE_NOISE_DB)
+        reflectance += noise[1]
     lost = (ranges < parameters.range_min) | (ranges > reach)
     ranges[lost] = np.nan
     reflectance[lost] = np.nan

@@ -124,4 +124,5 @@ def _slope(picture: Image, axis: int) -> Image:
     first, last = (steps[:1], steps[-1:]) if axis == 0 else (steps[:, :1], steps[:, -1:])
     before = np.concatenate([first, steps], axis=axis)
     after = np.concatenate([steps, last], axis=axis)
-    return np.where(np.abs(before) < np.abs(after), before, after)
+    np.copyto(before, after, where=np.abs(after) < np.abs(before))
+    return before

@@ -1,0 +1,107 @@
+"""The Hokuyo URG-04LX-UG01: a small laser that sweeps a level plane."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from sim.render.visibility import SHOWN, showing, visible_geoms
+
+# Makers' numbers: SCIP 2.0 manual of the URG-04LX, pages 5, 12, 21.
+STEPS_PER_TURN = 1024
+FIRST_STEP, FRONT_STEP, LAST_STEP = 44, 384, 725
+RESOLUTION = 0.001
+"""Ranges come in whole millimetres [m]."""
+
+
+class HokuyoParameters(BaseModel):
+    """How the small laser is used."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    noise: bool = Field(True, description="Range noise and rounding to 1 mm.")
+    range_min: float = Field(0.02, ge=0, description="[m] (SCIP manual)")
+    range_max: float = Field(5.6, gt=0, description="[m] (SCIP manual)")
+    noise_near: float = Field(0.01, ge=0, description="One sigma up to 1 m [m]: a third of the stated 30 mm.")
+    noise_far: float = Field(0.01, ge=0, description="One sigma beyond 1 m, over range: a third of the stated 3 %.")
+
+
+@dataclass(frozen=True, eq=False)
+class LaserScan:
+    """One sweep in the laser's frame: x forward, z up."""
+
+    base_from_laser: NDArray[np.float64]
+    """(4, 4) where the laser sits on the robot."""
+    angles: NDArray[np.float64]
+    """(682,) direction of each beam, anticlockwise from x, ascending [rad]."""
+    ranges: NDArray[np.float32]
+    """(682,) distance [m]; NaN = no return."""
+    time: int
+    """Mission time of the sweep [ns]."""
+
+
+class Hokuyo:
+    """A URG-04LX-UG01 in one world."""
+
+    angles = np.arange(FIRST_STEP - FRONT_STEP, LAST_STEP - FRONT_STEP + 1) * (2 * np.pi / STEPS_PER_TURN)
+    """(682,) direction of each beam [rad]: 240 deg, symmetric to within a step."""
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        *,
+        base_from_laser: NDArray[np.float64] | None = None,
+        hidden_bodies: Collection[int] = (),
+        parameters: HokuyoParameters | None = None,
+    ) -> None:
+        """Takes a laser into use.
+
+        Args:
+            model: the world.
+            base_from_laser: (4, 4) where the laser sits on the robot; handed on with each sweep.
+            hidden_bodies: ids of bodies that the laser does not see: the robot that carries it.
+            parameters: how to measure.
+        """
+        self.parameters = parameters or HokuyoParameters()
+        self._model = model
+        self._base_from_laser = np.eye(4) if base_from_laser is None else base_from_laser
+        self._visible = visible_geoms(model, hidden_bodies)
+
+    def measure(
+        self, data: mujoco.MjData, world_from_laser: NDArray[np.float64], rng: np.random.Generator, time: int
+    ) -> LaserScan:
+        """Sweeps once; glass is let through.
+
+        Args:
+            data: state of the world, after `mj_kinematics` or more.
+            world_from_laser: (4, 4) pose of the laser.
+            rng: source of the noise.
+            time: mission time [ns].
+        """
+        ranges = self._cast(data, world_from_laser)
+        if self.parameters.noise:
+            sigma = np.maximum(self.parameters.noise_near, self.parameters.noise_far * ranges)
+            ranges = np.rint((ranges + sigma * rng.standard_normal(len(ranges))) / RESOLUTION) * RESOLUTION
+        ranges[(ranges < self.parameters.range_min) | (ranges > self.parameters.range_max)] = np.nan
+        return LaserScan(self._base_from_laser, self.angles, ranges.astype(np.float32), time)
+
+    def _cast(self, data: mujoco.MjData, world_from_laser: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(682,) exact ranges [m]; infinite where there is nothing."""
+        count = len(self.angles)
+        beams = np.column_stack([np.cos(self.angles), np.sin(self.angles), np.zeros(count)])
+        beams_in_world = np.ascontiguousarray(beams @ world_from_laser[:3, :3].T).ravel()
+        origin = np.ascontiguousarray(world_from_laser[:3, 3])
+        groups = np.zeros(mujoco.mjNGROUP, np.uint8)
+        groups[SHOWN] = 1
+        hit, ranges = np.empty(count, np.int32), np.empty(count)
+        reach = 2 * self.parameters.range_max
+        with showing(self._model, self._visible):  # the only way to hide several bodies and glass from a ray
+            mujoco.mj_multiRay(
+                self._model, data, origin, beams_in_world, groups, True, -1, hit, ranges, None, count, reach
+            )
+        return np.where(hit < 0, np.inf, ranges)
