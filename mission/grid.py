@@ -177,15 +177,14 @@ def grid_from_scans(
     hits = _count(grid, points[height >= parameters.lowest_obstacle])
     around = cv2.boxFilter(hits.astype(np.float32), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
     occupied = (hits > 0) & (around > parameters.points_per_obstacle - 0.5)
-    # Between scan lines and in the shadow of a table leg lie gaps of a cell or two.
-    closed = cv2.morphologyEx(floor.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8)) > 0
-    seen = np.where(occupied, Cell.OCCUPIED, np.where(closed, Cell.FREE, Cell.UNKNOWN)).astype(np.uint8)
+    floor, occupied = _closed(floor), _closed(occupied)
+    seen = np.where(occupied, Cell.OCCUPIED, np.where(floor, Cell.FREE, Cell.UNKNOWN)).astype(np.uint8)
     grid = replace(grid, cells=seen)
     for scan, world_from_base in lasers:
         grid = with_laser(grid, scan, world_from_base, parameters=parameters)
     cells = grid.cells.copy()
     for scanner in np.asarray(scanners_in_world, dtype=np.float64):
-        cells[_shadowed(grid, closed, scanner, floor_height, parameters) & (cells == Cell.FREE)] = Cell.UNKNOWN
+        cells[_shadowed(grid, floor, scanner, floor_height, parameters) & (cells == Cell.FREE)] = Cell.UNKNOWN
     for world_from_base in robot_poses:
         cells[_under(grid, footprint or Footprint(), world_from_base)] = Cell.FREE
     return replace(grid, cells=cells)
@@ -255,6 +254,11 @@ def _count(grid: OccupancyGrid, points: NDArray[np.floating]) -> NDArray[np.intp
     row, column, inside = grid.indices(points)
     flat = (row * grid.cells.shape[1] + column)[inside]
     return np.bincount(flat, minlength=grid.cells.size).reshape(grid.cells.shape)
+
+
+def _closed(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Gaps of a cell or two filled, as they lie between scan lines on a table top or on the floor far away."""
+    return cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((3, 3), np.uint8)) > 0
 
 
 def _shadowed(

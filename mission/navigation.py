@@ -4,7 +4,7 @@ The robot is an oblong that turns on the spot, so two kinds of room are needed. 
 diagonal sweeps must be free; where it drives straight, only a band as wide as its body. The road map is made of exactly
 these: points whose disc is free, and between them legs whose band is free (the body's ends stay within the discs at
 the leg's ends). Legs have any direction, so that the robot passes a gap hardly wider than itself, also in a rotated
-building, but never turns in it. One Dijkstra search gives the ways to all points at once, as the planner of scans needs.
+building, but never turns in it. One Dijkstra search finds the ways to all points, which the planner of scans needs.
 """
 
 from __future__ import annotations

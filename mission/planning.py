@@ -15,16 +15,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from detector.room import VoxelLabel
 from mission.grid import Footprint, OccupancyGrid
 from mission.navigation import NavigationParameters, RoadMap, road_map
-from mission.prediction import Cells, Prospect, ScannerView, cubes, prospect
+from mission.survey import Preview, StructuralVoxels, Survey, SurveyParameters
 
 COVERAGE, NO_GAIN, SCAN_LIMIT = "coverage", "no gain", "scan limit"
 NO_OVERLAP, UNREACHABLE = "no overlap", "nothing reachable"
@@ -38,35 +36,13 @@ class PlanningParameters(BaseModel):
 
     max_scans: int = Field(default=6, ge=1, le=100, description="Scans of a room, the first included")
     target_coverage: float = Field(default=0.98, gt=0.0, le=1.0, description="Share of the structure's area")
-    min_value: float = Field(default=0.4, ge=0.0, le=100.0, description="A scan must be worth so much [m2]")
+    min_value: float = Field(default=0.5, ge=0.0, le=100.0, description="A scan must be worth so much [m2]")
     min_overlap: float = Field(default=0.3, ge=0.0, le=1.0, description="Known share of what is seen, for registration")
     travel_cost: float = Field(default=0.05, ge=0.0, le=5.0, description="Decay of the value with the way [1/m]")
-    quality_weight: float = Field(default=0.2, ge=0.0, le=10.0, description="Of wall area seen only obliquely so far")
+    quality_weight: float = Field(default=0.15, ge=0.0, le=10.0, description="Of wall area seen only obliquely so far")
     doorway_weight: float = Field(default=0.5, ge=0.0, le=10.0, description="Of doorway area seen from a new side")
-    oblique_deg: float = Field(default=65.0, gt=0.0, lt=90.0, description="Incidence beyond which a view is poor")
-    aside_deg: float = Field(default=20.0, ge=0.0, lt=90.0, description="Bearing from which a doorway's side is seen")
+    survey: SurveyParameters = SurveyParameters()
     max_candidates: int = Field(default=400, ge=1, le=10_000, description="More are thinned out evenly")
-    view: ScannerView = ScannerView()
-
-
-class StructuralVoxels(Protocol):
-    """The voxels of walls, floor and ceiling as one table."""
-
-    @property
-    def cells_in_world(self) -> NDArray[np.floating]:
-        """(M, 3) centres on the surface [m]."""
-
-    @property
-    def normals(self) -> NDArray[np.floating]:
-        """(M, 3) unit normals into the room."""
-
-    @property
-    def labels(self) -> NDArray[np.uint8]:
-        """(M,) `VoxelLabel`."""
-
-    @property
-    def areas(self) -> NDArray[np.floating]:
-        """(M,) area of the surface in the voxel [m2]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -139,10 +115,18 @@ def plan_next_scan(
     """
     parameters, footprint = parameters or PlanningParameters(), footprint or Footprint()
     roads = road_map(grid, world_from_base, footprint=footprint, parameters=navigation, within=room)
-    survey = _Survey(voxels, points_in_world, scanners_in_world, floor_height, parameters)
+    survey = Survey(
+        voxels,
+        points_in_world,
+        scanners_in_world,
+        floor_height=floor_height,
+        room=room,
+        parameters=parameters.survey,
+    )
+    mount = base_from_scanner[:3, 3] + np.array([0.0, 0.0, floor_height])
     offered = np.arange(1, len(roads.points))
     offered = offered[:: -(-len(offered) // parameters.max_candidates) or 1]
-    candidates = tuple(survey.judged(roads, int(k), base_from_scanner) for k in offered)
+    candidates = tuple(_judged(survey, roads, int(point), mount, parameters) for point in offered)
     stop_reason = _stop_reason(
         candidates, coverage=survey.coverage, scans=len(scanners_in_world), parameters=parameters
     )
@@ -156,99 +140,51 @@ def plan_next_scan(
     )
 
 
-class _Survey:
-    """What the scans so far have seen of the structure, against which candidates are judged."""
-
-    def __init__(
-        self,
-        voxels: StructuralVoxels,
-        points_in_world: NDArray[np.floating],
-        scanners_in_world: NDArray[np.float64],
-        floor_height: float,
-        parameters: PlanningParameters,
-    ) -> None:
-        self._cells = Cells(np.asarray(voxels.cells_in_world, np.float64), np.asarray(voxels.normals, np.float64))
-        self._areas = np.asarray(voxels.areas, np.float64)
-        self._parameters = parameters
-        self._floor_height = floor_height
-        self._occluders = cubes(points_in_world, self._cells, side=parameters.view.occluder)
-        self._occluded = voxels.labels == VoxelLabel.OCCLUDED
-        self._occupied = voxels.labels == VoxelLabel.OCCUPIED
-        self._walls = abs(self._cells.normals_in_world[:, 2]) < 0.5
-        self._doorways = self._down_to_floor((voxels.labels == VoxelLabel.OPENING) & self._walls)
-        earlier = [self._prospect(scanner) for scanner in np.asarray(scanners_in_world, np.float64)]
-        nowhere = np.zeros(len(self._areas), dtype=np.bool_)
-        self._well_seen = np.logical_or.reduce([nowhere] + [self._well(p) for p in earlier])
-        self._seen_from_left = np.logical_or.reduce([nowhere] + [self._from_side(p, 1) for p in earlier])
-        self._seen_from_right = np.logical_or.reduce([nowhere] + [self._from_side(p, -1) for p in earlier])
-        self.coverage = 1.0 - float(self._areas[self._occluded].sum() / max(self._areas.sum(), 1e-9))
-
-    def judged(self, roads: RoadMap, index: int, base_from_scanner: NDArray[np.float64]) -> ScanCandidate:
-        """What a scan from a point of the road map would bring."""
-        position, travel = roads.points[index], float(roads.metres[index])
-        if not np.isfinite(travel):
-            return _candidate(position, travel=travel, reason="no way there")
-        ahead = position - roads.points[roads.before[index]]
-        heading = float(np.arctan2(ahead[1], ahead[0]))
-        cos, sin = ahead / max(float(np.hypot(*ahead)), 1e-9)
-        x, y, z = base_from_scanner[:3, 3]
-        scanner = np.array([position[0] + cos * x - sin * y, position[1] + sin * x + cos * y, self._floor_height + z])
-        view = self._prospect(scanner)
-        new_side = (self._from_side(view, 1) & ~self._seen_from_left) | (
-            self._from_side(view, -1) & ~self._seen_from_right
-        )
-        known = self._area(view.seen & self._occupied)
-        gain = self._area(view.seen & self._occluded)
-        candidate = _candidate(
-            position,
-            heading=heading,
-            travel=travel,
-            gain=gain,
-            quality=self._area(self._well(view) & self._occupied & self._walls & ~self._well_seen),
-            doorway=self._area(new_side & self._doorways),
-            overlap=known / max(known + gain, 1e-9),
-        )
-        if candidate.overlap < self._parameters.min_overlap:
-            return replace(candidate, reason=f"overlap under {self._parameters.min_overlap:g}")
-        value = worth(candidate, self._parameters)
-        return replace(candidate, score=value * float(np.exp(-self._parameters.travel_cost * travel)))
-
-    def _prospect(self, scanner: NDArray[np.float64]) -> Prospect:
-        return prospect(scanner, self._cells, self._occluders, self._parameters.view)
-
-    def _area(self, chosen: NDArray[np.bool_]) -> float:
-        return float(self._areas[chosen].sum())
-
-    def _well(self, view: Prospect) -> NDArray[np.bool_]:
-        """(M,) cells seen at a good angle."""
-        return view.seen & (view.cosine >= np.cos(np.radians(self._parameters.oblique_deg)))
-
-    def _from_side(self, view: Prospect, side: int) -> NDArray[np.bool_]:
-        """(M,) cells seen from well to one side of their normal: 1 is anticlockwise of it, -1 clockwise."""
-        return view.seen & (side * view.bearing > np.radians(self._parameters.aside_deg))
-
-    def _down_to_floor(self, openings: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """(M,) opening cells in columns whose lowest 0.3 m (a voxel and a half) are open too."""
-        from scipy.spatial import cKDTree
-
-        centres = self._cells.centres_in_world
-        at_floor = openings & (centres[:, 2] < self._floor_height + 0.3)
-        doorways = np.zeros(len(openings), dtype=np.bool_)
-        if at_floor.any():
-            distance, _ = cKDTree(centres[at_floor, :2]).query(centres[openings, :2])
-            doorways[openings] = distance < 0.02  # the same column
-        return doorways
-
-
 def worth(candidate: ScanCandidate, parameters: PlanningParameters, *, covered: bool = False) -> float:
     """Value of a scan from a candidate [m2], before the way there; without the gain where that is no longer wanted."""
     extras = parameters.quality_weight * candidate.quality + parameters.doorway_weight * candidate.doorway
     return extras if covered else candidate.gain + extras
 
 
-def _candidate(position: NDArray[np.float64], *, travel: float, **fields: Any) -> ScanCandidate:
-    nothing = dict(heading=0.0, gain=0.0, quality=0.0, doorway=0.0, overlap=0.0, score=0.0, reason=None)
-    return ScanCandidate(position=position, travel=travel, **{**nothing, **fields})
+def _judged(
+    survey: Survey, roads: RoadMap, point: int, mount: NDArray[np.float64], parameters: PlanningParameters
+) -> ScanCandidate:
+    """What a scan from a point of the road map would bring, the scanner at (3,) `mount` in a base on z = 0."""
+    position, travel = roads.points[point], float(roads.metres[point])
+    if not np.isfinite(travel):
+        nothing = Preview(gain=0.0, quality=0.0, doorway=0.0, overlap=0.0)
+        return _candidate(position, nothing, heading=0.0, travel=travel, reason="no way there")
+    way = position - roads.points[roads.before[point]]
+    cos, sin = way / max(float(np.hypot(*way)), 1e-9)
+    offset = np.array([cos * mount[0] - sin * mount[1], sin * mount[0] + cos * mount[1], mount[2]])
+    preview = survey.preview(np.append(position, 0.0) + offset)
+    too_new = preview.overlap < parameters.min_overlap
+    candidate = _candidate(
+        position,
+        preview,
+        heading=float(np.arctan2(sin, cos)),
+        travel=travel,
+        reason=f"overlap under {parameters.min_overlap:g}" if too_new else None,
+    )
+    if too_new:
+        return candidate
+    return replace(candidate, score=worth(candidate, parameters) * float(np.exp(-parameters.travel_cost * travel)))
+
+
+def _candidate(
+    position: NDArray[np.float64], preview: Preview, *, heading: float, travel: float, reason: str | None
+) -> ScanCandidate:
+    return ScanCandidate(
+        position=position,
+        heading=heading,
+        gain=preview.gain,
+        quality=preview.quality,
+        doorway=preview.doorway,
+        overlap=preview.overlap,
+        travel=travel,
+        score=0.0,
+        reason=reason,
+    )
 
 
 def _stop_reason(

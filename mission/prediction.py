@@ -1,8 +1,9 @@
-"""What a scan from some place would see of given surface cells, as far as the known points stand in the way.
+"""What a scan from some place would see of given surface cells, as far as is known what stands in the way.
 
-No ray marching: the known points are sorted into the place's own depth maps, azimuth by elevation, and a cell is hidden
-if the map holds something nearer in its direction. A point stands for the cube that it represents; near the scanner the
-cube fills many bins, so near points go into coarser maps, in which they fill about one.
+No ray marching. Furniture: its points are sorted into the place's own depth maps, azimuth by elevation, and a cell is
+hidden if a map holds something nearer in its direction. A point stands for a cube of space; near the scanner the cube
+fills many bins, so near points go into coarser maps, in which they fill about one. Walls: the line of sight is cut with
+the sides of the room's polygon.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 _LEVELS = 4
 """Depth maps, each with bins twice as wide as the last one's."""
+_TOUCH = 0.3
+"""What is hit within this distance of a cell does not hide it [m]: the wall it belongs to, a skirting, a radiator."""
 
 
 class ScannerView(BaseModel):
@@ -27,7 +30,7 @@ class ScannerView(BaseModel):
     min_range: float = Field(default=1.5, ge=0.0, le=5.0, description="VZ-400 [m]")
     max_range: float = Field(default=10.0, gt=1.0, le=100.0, description="Beams are too far apart beyond [m]")
     max_incidence_deg: float = Field(default=75.0, gt=0.0, lt=90.0, description="Flatter beams see little")
-    occluder: float = Field(default=0.1, ge=0.02, le=0.5, description="Side of the cubes that hide what is behind [m]")
+    cube: float = Field(default=0.1, ge=0.02, le=0.5, description="Side of the cubes that points stand for [m]")
     bin_deg: float = Field(default=1.5, ge=0.2, le=5.0, description="Width of the finest depth map's bins")
 
 
@@ -35,10 +38,20 @@ class ScannerView(BaseModel):
 class Cells:
     """Small pieces of surface."""
 
-    centres_in_world: NDArray[np.float64]
-    """(M, 3) [m]."""
-    normals_in_world: NDArray[np.float64]
+    centres: NDArray[np.float64]
+    """(M, 3) in the world [m]."""
+    normals: NDArray[np.float64]
     """(M, 3) unit vectors towards the side that is looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacles:
+    """What can stand between a scanner and the cells."""
+
+    cubes: NDArray[np.float64]
+    """(K, 3) centres of the cubes of space that hold points off the cells' surfaces, in the world [m]."""
+    walls: NDArray[np.float64]
+    """(P, 2) polygon of the room [m], P = 0 if there is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,71 +60,99 @@ class Prospect:
 
     seen: NDArray[np.bool_]
     """(M,) within field of view, range and incidence, and nothing known in between."""
+    towards: NDArray[np.float64]
+    """(M, 3) unit vectors from the cells to the place."""
     cosine: NDArray[np.float64]
     """(M,) of the angle of incidence; negative from behind."""
-    bearing: NDArray[np.float64]
-    """(M,) where the place lies as seen from the cell: angle in plan from the cell's normal, anticlockwise [rad]."""
 
 
-def cubes(points_in_world: NDArray[np.floating], cells: Cells, *, side: float) -> NDArray[np.float64]:
-    """(K, 3) centres of the cubes that hold points, in the order of their position; far from all cells none is kept."""
-    low, high = cells.centres_in_world.min(axis=0) - side, cells.centres_in_world.max(axis=0) + side
+def find_obstacles(
+    points_in_world: NDArray[np.floating], cells: Cells, *, walls: NDArray[np.float64] | None, view: ScannerView
+) -> Obstacles:
+    """Gather what stands free of the surfaces that the cells are pieces of, from (N, 3) points."""
+    from scipy.spatial import cKDTree
+
+    low, high = cells.centres.min(axis=0), cells.centres.max(axis=0)
     inside = ((points_in_world >= low) & (points_in_world <= high)).all(axis=1)
-    index = np.floor((points_in_world[inside] - low) / side).astype(np.int64)
-    size = np.floor((high - low) / side).astype(np.int64) + 1
-    key = np.unique(np.ravel_multi_index(tuple(index.T), tuple(size)))
-    return low + (np.stack(np.unravel_index(key, tuple(size)), axis=1) + 0.5) * side
+    index = np.floor((points_in_world[inside] - low) / view.cube).astype(np.int64)
+    size = tuple(np.floor((high - low) / view.cube).astype(np.int64) + 1)
+    key = np.unique(np.ravel_multi_index(tuple(index.T), size))
+    centres = low + (np.stack(np.unravel_index(key, size), axis=1) + 0.5) * view.cube
+    distance, nearest = cKDTree(cells.centres).query(centres, distance_upper_bound=4 * view.cube)
+    near = np.flatnonzero(np.isfinite(distance))
+    cell = nearest[near]
+    off_surface = ((centres[near] - cells.centres[cell]) * cells.normals[cell]).sum(axis=1)
+    on_surface = np.zeros(len(centres), dtype=np.bool_)
+    on_surface[near] = abs(off_surface) <= view.cube
+    return Obstacles(cubes=centres[~on_surface], walls=np.empty((0, 2)) if walls is None else walls)
 
 
-def prospect(
-    scanner_in_world: NDArray[np.float64], cells: Cells, occluders_in_world: NDArray[np.float64], view: ScannerView
-) -> Prospect:
-    """Predict how cells would look from a (3,) place, given the (K, 3) centres of occluding cubes."""
-    towards = scanner_in_world - cells.centres_in_world
-    normals = cells.normals_in_world
-    distance = np.sqrt((towards**2).sum(axis=1))
-    cosine = (towards * normals).sum(axis=1) / np.maximum(distance, 1e-9)
-    elevation = np.arcsin(np.clip(-towards[:, 2] / np.maximum(distance, 1e-9), -1, 1))
+def prospect(scanner_in_world: NDArray[np.float64], cells: Cells, obstacles: Obstacles, view: ScannerView) -> Prospect:
+    """Predict how cells would look from a (3,) place."""
+    towards = scanner_in_world - cells.centres
+    distance = np.sqrt(_dot(towards, towards))
+    towards /= np.maximum(distance, 1e-9)[:, None]
+    cosine = _dot(towards, cells.normals)
     seen = (distance >= view.min_range) & (distance <= view.max_range)
     seen &= cosine >= np.cos(np.radians(view.max_incidence_deg))
-    seen &= elevation >= np.radians(view.lowest_elevation_deg)
-    seen &= elevation <= np.radians(view.highest_elevation_deg)
-    seen[seen] = ~_hidden(-towards[seen], cosine[seen], occluders_in_world - scanner_in_world, view)
-    across = normals[:, 0] * towards[:, 1] - normals[:, 1] * towards[:, 0]
-    along = normals[:, 0] * towards[:, 0] + normals[:, 1] * towards[:, 1]
-    return Prospect(seen=seen, cosine=cosine, bearing=np.arctan2(across, along))
+    seen &= -towards[:, 2] >= np.sin(np.radians(view.lowest_elevation_deg))
+    seen &= -towards[:, 2] <= np.sin(np.radians(view.highest_elevation_deg))
+    at = np.flatnonzero(seen)
+    hidden = _behind_cubes(cells.centres[at] - scanner_in_world, obstacles.cubes - scanner_in_world, view)
+    hidden |= _behind_walls(scanner_in_world[:2], cells.centres[at, :2], obstacles.walls)
+    seen[at[hidden]] = False
+    return Prospect(seen=seen, towards=towards, cosine=cosine)
 
 
-def _hidden(
-    offsets: NDArray[np.float64], cosine: NDArray[np.float64], occluders: NDArray[np.float64], view: ScannerView
-) -> NDArray[np.bool_]:
-    """(M,) which cells at (M, 3) offsets from the scanner have one of (K, 3) occluders in front."""
-    width = np.radians(view.bin_deg)
-    level = np.log2(view.occluder / (np.maximum(np.hypot(occluders[:, 0], occluders[:, 1]), 1e-9) * width))
-    level = np.clip(np.ceil(level), 0, _LEVELS - 1).astype(np.int64)
-    directions = _direction(occluders)
-    depth = np.sqrt((occluders**2).sum(axis=1))
-    distance = np.sqrt((offsets**2).sum(axis=1))
-    looks = _direction(offsets)
-    # Along an oblique surface one bin spans a range of depths: the surface must not hide itself.
-    slope = np.sqrt(np.maximum(1 - cosine**2, 0)) / cosine
-    hidden = np.zeros(len(offsets), dtype=np.bool_)
+def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
+
+
+def _behind_cubes(cells: NDArray[np.float64], cubes: NDArray[np.float64], view: ScannerView) -> NDArray[np.bool_]:
+    """(M,) which (M, 3) cells have one of (K, 3) cubes in front, all as offsets from the scanner."""
+    azimuth, polar, depth, level_distance = _spherical(cubes)
+    finest = np.radians(view.bin_deg)
+    level = np.ceil(np.log2(view.cube / np.maximum(level_distance * finest, 1e-6)))
+    level = np.clip(level, 0, _LEVELS - 1).astype(np.intp)
+    cell_azimuth, cell_polar, distance, _ = _spherical(cells)
+    hidden = np.zeros(len(cells), dtype=np.bool_)
     for n in range(_LEVELS):
-        chosen = level == n
-        bins = width * 2**n
-        nearest = np.full((int(np.pi / bins) + 2) * (int(2 * np.pi / bins) + 2), np.inf)
-        np.minimum.at(nearest, _bin(directions[:, chosen], bins), depth[chosen])
-        hidden |= nearest[_bin(looks, bins)] < distance - 2 * view.occluder - distance * bins * slope
+        width, chosen = finest * 2**n, level == n
+        columns = int(2 * np.pi / width) + 2
+        nearest = np.full((int(np.pi / width) + 2) * columns, np.inf, dtype=np.float32)
+        filled = (polar[chosen] / width).astype(np.intp) * columns + (azimuth[chosen] / width).astype(np.intp)
+        np.minimum.at(nearest, filled, depth[chosen])
+        looked = (cell_polar / width).astype(np.intp) * columns + (cell_azimuth / width).astype(np.intp)
+        hidden |= nearest[looked] < distance - np.float32(_TOUCH)
     return hidden
 
 
-def _direction(offsets: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(2, N) azimuth in [0, 2 pi] and polar angle from the nadir in [0, pi] [rad]."""
-    azimuth = np.arctan2(offsets[:, 1], offsets[:, 0]) + np.pi
-    return np.stack([azimuth, np.arctan2(offsets[:, 2], np.hypot(offsets[:, 0], offsets[:, 1])) + np.pi / 2])
+def _spherical(offsets: NDArray[np.float64]) -> tuple[NDArray[np.float32], ...]:
+    """Azimuth in [0, 2 pi], angle from the nadir in [0, pi] [rad], range and range in plan [m], each (N,)."""
+    x, y, z = offsets.astype(np.float32).T
+    plan = np.sqrt(x * x + y * y)
+    return (
+        np.arctan2(y, x) + np.float32(np.pi),
+        np.arctan2(z, plan) + np.float32(np.pi / 2),
+        np.sqrt(plan**2 + z * z),
+        plan,
+    )
 
 
-def _bin(directions: NDArray[np.float64], width: float) -> NDArray[np.int64]:
-    """(N,) index of the bin that a direction falls into."""
-    azimuth, polar = (directions / width).astype(np.int64)
-    return polar * (int(2 * np.pi / width) + 2) + azimuth
+def _behind_walls(
+    scanner: NDArray[np.float64], cells: NDArray[np.float64], polygon: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """(M,) which (M, 2) cells have a side of the (P, 2) polygon between themselves and the (2,) scanner."""
+    if len(polygon) == 0:
+        return np.zeros(len(cells), dtype=np.bool_)
+    ray = cells - scanner
+    first = polygon - scanner
+    side = np.roll(polygon, -1, axis=0) - polygon
+    # scanner + t ray = first + s side, solved by Cramer's rule for all cells (rows) and sides (columns)
+    cross = ray[:, 0, None] * side[:, 1] - ray[:, 1, None] * side[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):  # parallel: no crossing
+        t = (first[:, 0] * side[:, 1] - first[:, 1] * side[:, 0]) / cross
+        s = (first[:, 0] * ray[:, 1, None] - first[:, 1] * ray[:, 0, None]) / cross
+    before = 1 - _TOUCH / np.maximum(np.hypot(ray[:, 0], ray[:, 1]), 1e-9)
+    hides: NDArray[np.bool_] = (s >= 0) & (s <= 1) & (t > 0) & (t < before[:, None])
+    return np.any(hides, axis=1)
