@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from mission.evaluation import DoorEvaluation
+    from sim.doors import DoorTruth
 
 GRID = 512.0
 """Recorded coordinates are multiples of 1/512 m: at most 1 mm off per axis (0.6 mm rms), a fifth of the scanner's
@@ -145,6 +146,13 @@ def angle_label(evaluation: DoorEvaluation) -> str:
     """Estimate beside truth: "34.8 deg (joint 35.0)"."""
     truth = "no such door" if evaluation.true_name is None else f"joint {degrees(evaluation.true_angle)}"
     return f"{degrees(evaluation.door.opening_angle)} deg ({truth})"
+
+
+def opening(door: DoorTruth) -> float:
+    """How far a true door stands open: its wider leaf [rad], or its way along the slide [m]."""
+    if door.kind == "sliding":
+        return max(leaf.opening for leaf in door.leaves)
+    return max(leaf.opening_angle for leaf in door.leaves)
 
 
 def jpeg(image: NDArray[np.uint8], *, quality: int = JPEG_QUALITY) -> bytes:

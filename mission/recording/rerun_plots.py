@@ -11,7 +11,7 @@ import rerun as rr
 from mission.evaluation import DoorEvaluation
 from mission.events import DoorsEvaluated, Drove, Event, Labelled, MissionFinished, MissionStarted, Planned
 from mission.recording import entities
-from mission.recording.drawing import palette
+from mission.recording.drawing import opening, palette
 from mission.recording.entities import child
 from mission.recording.sentences import level, sentence
 
@@ -66,7 +66,7 @@ class Plots:
         for door in event.true_doors:
             style = rr.SeriesLines(names=f"joint of {door.name}", colors=JOINT_COLOUR, widths=1.5)
             self._rec.log(child(entities.ANGLES, "joint", door.name), style, static=True)
-        self._plot_joints({door.name: _opening_angle(door) for door in event.true_doors})
+        self._plot_joints({door.name: opening(door) for door in event.true_doors})
 
     @_plot.register
     def _(self, event: Drove) -> None:
@@ -121,11 +121,6 @@ class Plots:
 
     def _plot_coverage(self, room: int, coverage: float) -> None:
         self._rec.log(child(entities.COVERAGE, room), rr.Scalars(100.0 * coverage))
-
-
-def _opening_angle(door: DoorTruth) -> float:
-    """Angle of the wider open leaf [rad]."""
-    return max((leaf.opening_angle for leaf in door.leaves), default=0.0)
 
 
 def _row(evaluation: DoorEvaluation) -> rr.AnyValues:

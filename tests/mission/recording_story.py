@@ -126,7 +126,7 @@ def evaluation(wall: Wall, number: int, found: Door, *, name: str | None, angle:
 def true_door(name: str, wall: Wall, angle: float) -> Any:
     """What the recordings read of a `sim.doors.DoorTruth`."""
     corners = wall.world_from_wall(np.array([[1, 0, 0], [1.9, 0, 0], [1.9, 2.1, 0], [1, 2.1, 0]], float))
-    leaf = SimpleNamespace(name=name, opening_angle=angle, corners_in_world=corners)
+    leaf = SimpleNamespace(name=name, opening_angle=angle, opening=np.nan, corners_in_world=corners)
     return SimpleNamespace(name=name, kind="hinged", leaves=(leaf,), corners_in_world=corners, leaf_names=(name,))
 
 

@@ -1,0 +1,211 @@
+"""What the MCAP file keeps of each event: fields of our own messages, and things to draw."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from foxglove.messages import SceneEntity, SceneEntityDeletion, SceneEntityDeletionType
+from numpy.typing import NDArray
+
+from detector.result import Door, WallResult
+from mission.events import DoorsDetected, DoorsEvaluated, Drove, Labelled, Planned, Registered, Structured
+from mission.recording import mcap_messages as messages
+from mission.recording.drawing import Outlined, angle_label, closed, outline, palette, quads
+
+if TYPE_CHECKING:
+    from mission.evaluation import DoorEvaluation
+    from mission.planning import ScanCandidate
+    from sim.robot import RobotShape
+
+WALL_COLOUR = (120, 160, 220)
+TRUTH_COLOUR = (255, 255, 255)
+NAN = float("nan")
+
+
+def registration(event: Registered) -> dict[str, Any]:
+    """mission.Registration."""
+    return {
+        "scan": event.scan_number,
+        "guess_world_from_scanner": _flat(event.guess_world_from_scanner),
+        "world_from_scanner": _flat(event.world_from_scanner),
+        "fitness": event.fitness,
+        "rmse": event.rmse,
+        "accepted": event.accepted,
+        "reason": event.reason,
+        "true_world_from_scanner": _flat(event.true_world_from_scanner),
+    }
+
+
+def structure(event: Structured) -> dict[str, Any]:
+    """mission.Structure."""
+    found = event.structure
+    return {
+        "scan": event.scan_number,
+        "floor_height": found.floor_height,
+        "ceiling_height": NAN if found.ceiling_height is None else found.ceiling_height,
+        "walls": [_wall(wall) for wall in found.walls],
+        "polygon": _flat(found.polygon),
+    }
+
+
+def voxels(event: Labelled) -> dict[str, Any]:
+    """mission.Voxels."""
+    grids = [(f"wall {number}", labels) for number, labels in enumerate(event.voxels.walls, start=1)]
+    return {
+        "scan": event.scan_number,
+        "coverage": event.voxels.coverage,
+        "grids": [
+            {"surface": name, "rows": len(labels), "columns": labels.shape[1], "labels": labels.tobytes()}
+            for name, labels in grids
+        ],
+    }
+
+
+def plan(event: Planned) -> dict[str, Any]:
+    """mission.Plan."""
+    made = event.plan
+    return {
+        "scan": event.scan_number,
+        "candidates": [_candidate(candidate) for candidate in made.candidates],
+        "chosen": -1 if made.chosen is None else made.chosen,
+        "stop_reason": made.stop_reason or "",
+        "coverage": made.coverage,
+    }
+
+
+def drive(event: Drove) -> dict[str, Any]:
+    """mission.Drive."""
+    return {
+        "planned_path": _flat(event.planned_path),
+        "arrived": event.arrived,
+        "reason": event.reason,
+        "poses": len(event.times),
+    }
+
+
+def detected(event: DoorsDetected) -> dict[str, Any]:
+    """mission.DetectedDoors."""
+    return {
+        "floor_height": event.floor_height,
+        "ceiling_height": NAN if event.ceiling_height is None else event.ceiling_height,
+        "walls": [_detected_wall(result) for result in event.results],
+    }
+
+
+def estimates(event: DoorsEvaluated) -> dict[str, Any]:
+    """mission.DoorEstimates."""
+    return {"doors": [_estimate(evaluation) for evaluation in event.doors], "missed": list(event.missed)}
+
+
+def robot(time: int, shape: RobotShape) -> SceneEntity:
+    """The robot's body, which moves with its base."""
+    colours = [messages.colour(rgb) for rgb in shape.colours.tolist()]
+    body = messages.surface(shape.vertices, shape.triangles, colours=colours)
+    return messages.scene_entity(time, "robot", frame="base", triangles=[body])
+
+
+def wall(time: int, room: int, number: int, rectangle: Outlined) -> SceneEntity:
+    """A wall's outline and name."""
+    name, line = f"wall {room}.{number}", outline(rectangle)
+    words = messages.text(line[2:4].mean(axis=0), name, WALL_COLOUR)
+    return messages.scene_entity(time, name, lines=messages.lines([line], WALL_COLOUR), texts=[words])
+
+
+def door(time: int, evaluation: DoorEvaluation, number: int) -> list[SceneEntity]:
+    """A door as estimated with its label, and its true leaves."""
+    rgb, leaves = palette(number), evaluation.leaf_corners_in_world
+    corners = evaluation.corners_in_world
+    label = messages.text(corners[2:].mean(axis=0), f"{evaluation.door_id}: {angle_label(evaluation)}", rgb)
+    face = messages.surface(*quads(leaves), tint=messages.colour(rgb, 0.4))
+    edges = messages.lines([closed(corners), *(closed(leaf) for leaf in leaves)], rgb)
+    truth = messages.lines([closed(leaf) for leaf in evaluation.true_leaf_corners_in_world], TRUTH_COLOUR, width=0.01)
+    name = f"door {evaluation.door_id}"
+    return [
+        messages.scene_entity(time, name, lines=edges, triangles=[face], texts=[label]),
+        messages.scene_entity(time, f"truth of {name}", lines=truth),
+    ]
+
+
+def everything(time: int) -> SceneEntityDeletion:
+    """Wipes what was drawn on a topic before."""
+    return SceneEntityDeletion(timestamp=messages.timestamp(time), type=SceneEntityDeletionType.All, id="")
+
+
+def on_floor(position: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The pose (4, 4) of a point (2,) of a path, at z = 0."""
+    pose = np.eye(4)
+    pose[:2, 3] = position
+    return pose
+
+
+def _flat(array: NDArray[np.floating]) -> list[float]:
+    return np.asarray(array, float).ravel().tolist()
+
+
+def _wall(rectangle: Outlined) -> dict[str, Any]:
+    return {
+        "origin": _flat(rectangle.origin),
+        "u": _flat(rectangle.u),
+        "v": _flat(rectangle.v),
+        "width": rectangle.width,
+        "height": rectangle.height,
+    }
+
+
+def _candidate(candidate: ScanCandidate) -> dict[str, Any]:
+    return {
+        "x": float(candidate.position[0]),
+        "y": float(candidate.position[1]),
+        "heading": candidate.heading,
+        "gain": candidate.gain,
+        "overlap": candidate.overlap,
+        "travel": candidate.travel,
+        "score": candidate.score,
+        "reason": candidate.reason or "",
+    }
+
+
+def _detected_wall(result: WallResult) -> dict[str, Any]:
+    return {"wall": _wall(result.wall), "doors": [_detected_door(found) for found in result.doors]}
+
+
+def _detected_door(found: Door) -> dict[str, Any]:
+    r = found.rectangle
+    return {
+        "rectangle": [r.left, r.bottom, r.right, r.top],
+        "kind": found.kind,
+        "state": found.state,
+        "leaves": [
+            {
+                "hinge": leaf.hinge,
+                "opening_angle": leaf.opening_angle,
+                "opening_angle_std": leaf.opening_angle_std,
+                "opens": leaf.opens or "",
+            }
+            for leaf in found.leaves
+        ],
+    }
+
+
+def _estimate(evaluation: DoorEvaluation) -> dict[str, Any]:
+    found, areas = evaluation.door, evaluation.overlap
+    return {
+        "id": evaluation.door_id,
+        "wall": evaluation.wall,
+        "kind": found.kind,
+        "state": found.state,
+        "width": found.rectangle.width,
+        "height": found.rectangle.height,
+        "corners": _flat(evaluation.corners_in_world),
+        "opening_angle": found.opening_angle,
+        "opening_angle_std": evaluation.opening_angle_std,
+        "leaf_angles": [leaf.opening_angle for leaf in found.leaves],
+        "hinge": evaluation.hinge,
+        "opens": evaluation.opens or "",
+        "true_name": evaluation.true_name or "",
+        "true_angle": NAN if evaluation.true_angle is None else evaluation.true_angle,
+        "angle_error": NAN if evaluation.angle_error is None else evaluation.angle_error,
+        "precision": NAN if areas is None else areas.precision,
+        "recall": NAN if areas is None else areas.recall,
+    }

@@ -1,0 +1,210 @@
+"""The mission as an MCAP file: the machine's record, the same bytes for the same mission."""
+
+from __future__ import annotations
+
+import json
+from functools import singledispatchmethod
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+import foxglove
+import numpy as np
+from foxglove.mcap import MCAPCompression, MCAPWriteOptions
+from foxglove.messages import (
+    FrameTransforms,
+    JointState,
+    JointStates,
+    Log,
+    LogLevel,
+    PosesInFrame,
+    SceneUpdate,
+)
+from numpy.typing import NDArray
+
+from mission.events import (
+    Coloured,
+    DoorsDetected,
+    DoorsEvaluated,
+    Drove,
+    Event,
+    Labelled,
+    MissionFinished,
+    MissionStarted,
+    Photographed,
+    Planned,
+    Registered,
+    Structured,
+)
+from mission.recording import mcap_messages as messages
+from mission.recording import mcap_records as records
+from mission.recording.drawing import opening
+from mission.recording.mcap_messages import MAP
+from mission.recording.mcap_topics import open_channels
+from mission.recording.sentences import level, sentence
+
+if TYPE_CHECKING:
+    from sim.hokuyo import LaserScan
+
+EPOCH = 946_684_800_000_000_000
+"""Mission time zero on the clock of the file: 2000-01-01 00:00:00 UTC [ns]. A mission has no date of its own."""
+PER_STEP = 1_000
+"""Added to an event's time for each earlier event [ns]: detection takes no mission time, but has an order."""
+
+
+class McapSink:
+    """Writes every event to an MCAP file as it happens.
+
+    Log times are mission time since `EPOCH` plus a microsecond an event, strictly increasing over the file; timestamps
+    inside messages are mission time alone. Nothing of wall clock, host or path goes in, and compression runs on a fixed
+    number of threads, so two runs of one mission give the same bytes.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Record into a file, which is overwritten."""
+        self._path = path
+        self._last_log_time = 0
+        self._joints: tuple[str, ...] = ()
+
+    def __enter__(self) -> Self:
+        self._context = foxglove.Context()  # never the global one, whose topics leak between recordings; kept alive
+        options = MCAPWriteOptions(
+            profile="", compression=MCAPCompression.Zstd, compression_level=1, compression_threads=2
+        )
+        self._writer = foxglove.open_mcap(
+            self._path, allow_overwrite=True, context=self._context, writer_options=options
+        )
+        self._channels = open_channels(self._context)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._writer.close()
+
+    def handle(self, event: Event) -> None:
+        """Record one event; when this returns, the event is in the file and its chunk is closed."""
+        self._event = event
+        self._now = EPOCH + event.time
+        self._record(event)
+        severity = LogLevel.Warning if level(event) == "WARN" else LogLevel.Info
+        self._log(
+            "/log",
+            Log(timestamp=messages.timestamp(self._now), level=severity, message=sentence(event), name="mission"),
+        )
+        self._log("/mission/step", {"step": event.step, "room": event.room, "event": type(event).__name__})
+        self._writer.flush()
+
+    @singledispatchmethod
+    def _record(self, event: Event) -> None:
+        """Write what an event carries; some say it all in the log."""
+
+    @_record.register
+    def _(self, event: MissionStarted) -> None:
+        self._writer.write_metadata("mission", {"scene": event.scene, "seed": str(event.seed)})
+        self._writer.write_metadata("versions", dict(sorted(event.versions.items())))
+        self._attach("config.json", "application/json", json.dumps(event.config, indent=2))
+        self._attach(event.scene, "application/xml", event.scene_xml)
+        self._log("/tf", self._transforms(("tf#/", MAP, np.eye(4)), (MAP, "base", event.world_from_base)))
+        self._log("/tf", self._transforms(("base", "scanner", event.base_from_scanner)))
+        self._joints = tuple(door.name for door in event.true_doors)
+        openings = np.array([opening(door) for door in event.true_doors])
+        self._log("/truth/joints", self._joint_states(self._now, openings))
+        self._log("/robot", SceneUpdate(entities=[records.robot(self._now, event.robot)]))
+
+    @_record.register
+    def _(self, event: Photographed) -> None:
+        for number, photo in enumerate(event.photos, start=1):
+            frame = f"scan {event.scan_number} photo {number}"
+            parent = f"scan {event.scan_number}"
+            self._log("/tf", self._transforms((parent, frame, photo.scanner_from_camera)))
+            calibration = messages.calibration(self._now, frame, photo.image, photo.intrinsics)
+            self._log("/camera/calibration", calibration)
+            self._log("/camera/image", messages.photograph(self._now, frame, photo.image))
+
+    @_record.register
+    def _(self, event: Registered) -> None:
+        self._log("/tf", self._transforms((MAP, f"scan {event.scan_number}", event.world_from_scanner)))
+        self._log("/scan/registration", records.registration(event))
+
+    @_record.register
+    def _(self, event: Coloured) -> None:
+        view = event.view
+        self._log("/scan/points", messages.cloud(self._now, view.points_in_world, view.colours, view.coloured))
+
+    @_record.register
+    def _(self, event: Structured) -> None:
+        self._log("/room/structure", records.structure(event))
+        entities = [records.wall(self._now, event.room, n, w) for n, w in enumerate(event.structure.walls, start=1)]
+        self._log("/room/walls", SceneUpdate(deletions=[records.everything(self._now)], entities=entities))
+
+    @_record.register
+    def _(self, event: Labelled) -> None:
+        self._log("/room/voxels", records.voxels(event))
+
+    @_record.register
+    def _(self, event: Planned) -> None:
+        self._log("/plan/candidates", records.plan(event))
+        grid = event.grid
+        self._log("/plan/grid", messages.occupancy(self._now, grid.origin, grid.resolution, grid.cells))
+
+    @_record.register
+    def _(self, event: Drove) -> None:
+        self._log_way(event)
+        path = [messages.pose(records.on_floor(point)) for point in event.planned_path]
+        self._log(
+            "/drive/planned_path", PosesInFrame(timestamp=messages.timestamp(self._now), frame_id=MAP, poses=path)
+        )
+        self._log("/drive/leg", records.drive(event))
+
+    @_record.register
+    def _(self, event: DoorsDetected) -> None:
+        self._log("/doors/detected", records.detected(event))
+
+    @_record.register
+    def _(self, event: DoorsEvaluated) -> None:
+        self._log("/doors/estimates", records.estimates(event))
+        entities = [e for number, door in enumerate(event.doors) for e in records.door(self._now, door, number)]
+        self._log("/doors/scene", SceneUpdate(entities=entities))
+
+    @_record.register
+    def _(self, event: MissionFinished) -> None:
+        self._log("/mission/outcome", {"outcome": event.outcome, "reason": event.reason})
+
+    def _log_way(self, event: Drove) -> None:
+        """Poses, joints and Hokuyo scans of a leg, in the order of their times."""
+        scans = sorted(event.laser_scans, key=lambda scan: scan.time)
+        for place, time in enumerate(event.times):
+            while scans and scans[0].time <= time:
+                self._log_laser(scans.pop(0))
+            when = EPOCH + int(time)
+            base, truth = event.world_from_base[place], event.true_world_from_base[place]
+            self._log("/tf", self._transforms((MAP, "base", base), (MAP, "true base", truth), when=when), when=when)
+            self._log("/truth/joints", self._joint_states(when, event.true_door_angles[place]), when=when)
+        for scan in scans:
+            self._log_laser(scan)
+
+    def _log_laser(self, scan: LaserScan) -> None:
+        when = EPOCH + scan.time
+        message = messages.laser_scan(when, "base", scan.base_from_laser, scan.angles, scan.ranges)
+        self._log("/laser", message, when=when)
+
+    def _log(self, topic: str, message: Any, *, when: int | None = None) -> None:
+        """Write one message at the event's time, or at another one; later than the last in any case."""
+        time = (self._now if when is None else when) + PER_STEP * self._event.step
+        self._last_log_time = max(time, self._last_log_time + 1)
+        self._channels[topic].log(message, log_time=self._last_log_time)
+
+    def _attach(self, name: str, media_type: str, text: str) -> None:
+        self._writer.attach(
+            log_time=self._now, create_time=self._now, name=name, media_type=media_type, data=text.encode()
+        )
+
+    def _transforms(self, *frames: tuple[str, str, NDArray[np.float64]], when: int | None = None) -> FrameTransforms:
+        """Frames as (parent, child, parent_from_child)."""
+        time = self._now if when is None else when
+        return FrameTransforms(transforms=[messages.transform(time, *frame) for frame in frames])
+
+    def _joint_states(self, time: int, positions: NDArray[np.float64]) -> JointStates:
+        joints = [JointState(name=n, position=float(p)) for n, p in zip(self._joints, positions, strict=True)]
+        return JointStates(timestamp=messages.timestamp(time), joints=joints)
