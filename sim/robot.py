@@ -1,0 +1,200 @@
+"""MoPAD driven by physics: wheels on a floor, an odometry that drifts, and what it bumps into."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from sim.rays import geom_name
+from sim.scene import FOOTPRINT, Scene, set_base
+from sim.shapes import triangulate
+from sim.start import upright_pose
+
+_LEFT = ("left_front", "left_middle", "left_rear")
+_RIGHT = ("right_front", "right_middle", "right_rear")
+_ENCODERS = ("left_middle", "right_middle")
+_VISUAL_GROUPS = 3
+_STANDING = 0.7
+"""Cosine between a contact's normal and the vertical from which on a wheel stands on what it touches."""
+
+
+class RobotParameters(BaseModel):
+    """How MoPAD drives and how well it knows it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    max_speed: float = Field(0.3, gt=0, le=1.5, description="Guardian navigation: 0.1-0.3 m/s, at most 1.5 [m/s]")
+    max_turn_rate: float = Field(0.7, gt=0, le=1.0, description="Guardian: 0.7 rad/s [rad/s]")
+    max_acceleration: float = Field(0.5, gt=0, le=5, description="Guardian navigation: 0.5 m/s2 [m/s^2]")
+    max_turn_acceleration: float = Field(1.0, gt=0, le=10, description="so that it turns without a jerk [rad/s^2]")
+    wheel_radius: float = Field(0.18, gt=0, description="Guardian code: diameter 0.355-0.360 [m]")
+    track_width: float = Field(
+        0.46,
+        gt=0,
+        description="effective in odometry: 0.448 theoretical on tracks, 3 % more by slip (measured here) [m]",
+    )
+    encoder_scale_error: float = Field(0.01, ge=0, le=0.2, description="1 sigma of each side's rolling radius [1]")
+    track_width_error: float = Field(0.02, ge=0, le=0.2, description="1 sigma: slip differs from floor to floor [1]")
+    control_period: float = Field(0.02, gt=0, le=0.2, description="of the speed ramp and the odometry [s]")
+    settling_time: float = Field(0.5, ge=0, le=10, description="standing still after being set down [s]")
+
+
+@dataclass(frozen=True)
+class RobotShape:
+    """Triangles of the robot as it is drawn."""
+
+    vertices: np.ndarray
+    """(V, 3) float32 in the base frame [m]."""
+    triangles: np.ndarray
+    """(T, 3) int32 indices of vertices, anticlockwise seen from outside."""
+    colours: np.ndarray
+    """(V, 3) uint8 sRGB."""
+
+
+class Robot:
+    """MoPAD in a scene. Its base frame lies on the floor midway between the axles, x forward, z up.
+
+    Args:
+        scene: the loaded scene; its data is what moves.
+        parameters: limits and errors.
+        rng: draws the errors of this robot's odometry, once.
+    """
+
+    def __init__(self, scene: Scene, parameters: RobotParameters, rng: np.random.Generator):
+        self._model, self._data, self._prefix = scene.model, scene.data, scene.robot_prefix
+        self._parameters = parameters
+        self._bodies = scene.robot_bodies
+        self._base = self._model.body(f"{self._prefix}base").id
+        self._left = [self._model.actuator(self._prefix + name).id for name in _LEFT]
+        self._right = [self._model.actuator(self._prefix + name).id for name in _RIGHT]
+        self._encoders = [int(self._model.joint(self._prefix + name).qposadr[0]) for name in _ENCODERS]
+        self._radii = parameters.wheel_radius * (1 + parameters.encoder_scale_error * rng.standard_normal(2))
+        self._track_width = parameters.track_width * (1 + parameters.track_width_error * rng.standard_normal())
+        self._speed = np.zeros(2)
+        self._waited = 0.0
+        self._started = self._data.time
+        self.base_from_scanner = self._mount("beam_origin")
+        """(4, 4) of the scanner's beam origin."""
+        self.base_from_lasers = (self._mount("laser_front"), self._mount("laser_rear"))
+        """(4, 4) of the front and the rear Hokuyo; their x axes point away from the robot."""
+        self.footprint = FOOTPRINT
+        """Length and width [m]."""
+        self._odometry = scene.world_from_base.copy()
+        self.settle()
+
+    @property
+    def odometry(self) -> np.ndarray:
+        """World pose (4, 4) of the base as the wheels tell it: the known start, then dead reckoning, which drifts."""
+        return self._odometry.copy()
+
+    @property
+    def true_world_from_base(self) -> np.ndarray:
+        """World pose (4, 4) of the base as the physics has it: for sensors to measure from and for the evaluation."""
+        pose = np.eye(4)
+        pose[:3, :3] = self._data.xmat[self._base].reshape(3, 3)
+        pose[:3, 3] = self._data.xpos[self._base]
+        return pose
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the robot was set down, driving and waiting [s]."""
+        return float(self._data.time - self._started + self._waited)
+
+    def step(self, v: float, w: float, duration: float) -> None:
+        """Holds a command for a while; speeds ramp within the limits of acceleration.
+
+        Args:
+            v: forward speed [m/s], cut to the robot's limit.
+            w: turn rate, anticlockwise positive [rad/s], cut likewise.
+            duration: at least one physics step is done [s].
+        """
+        limits = np.array([self._parameters.max_speed, self._parameters.max_turn_rate])
+        ramps = np.array([self._parameters.max_acceleration, self._parameters.max_turn_acceleration])
+        command = np.clip([v, w], -limits, limits)
+        timestep = self._model.opt.timestep
+        remaining = max(1, round(duration / timestep))
+        while remaining > 0:
+            steps = min(remaining, max(1, round(self._parameters.control_period / timestep)))
+            self._speed += np.clip(command - self._speed, -ramps * steps * timestep, ramps * steps * timestep)
+            self._command_wheels()
+            before = self._wheel_angles()
+            mujoco.mj_step(self._model, self._data, steps)
+            self._reckon(self._wheel_angles() - before)
+            remaining -= steps
+        mujoco.mj_forward(self._model, self._data)
+
+    def settle(self) -> None:
+        """Stops and stands until the robot rests on its wheels."""
+        self._speed[:] = 0.0
+        self.step(0.0, 0.0, self._parameters.settling_time)
+
+    def wait(self, duration: float) -> None:
+        """Stands still with the brakes on while a sensor measures: the clock runs, nothing moves [s]."""
+        self._waited += duration
+
+    def set_down(self, world_from_base: np.ndarray) -> None:
+        """An operator carries the robot to a known pose (4, 4) on the floor; its odometry starts from there."""
+        set_base(self._model, self._data, self._prefix, world_from_base)
+        self._odometry = np.array(world_from_base, float)
+        self.settle()
+
+    def contacts(self) -> tuple[str, ...]:
+        """Names of the scene's geoms that the robot touches, without those that its wheels stand on."""
+        touched = []
+        for contact in self._data.contact:
+            mine = [int(self._model.geom_bodyid[geom]) in self._bodies for geom in contact.geom]
+            if mine[0] != mine[1] and contact.dist <= 0 and abs(contact.frame[2]) < _STANDING:
+                touched.append(geom_name(self._model, int(contact.geom[0] if mine[1] else contact.geom[1])))
+        return tuple(sorted(set(touched)))
+
+    def shape(self) -> RobotShape:
+        """The robot's visible surface."""
+        vertices, triangles, colours = [], [], []
+        base_from_world = np.linalg.inv(self.true_world_from_base)
+        count = 0
+        for geom in np.flatnonzero(np.isin(self._model.geom_bodyid, sorted(self._bodies))):
+            if self._model.geom_group[geom] >= _VISUAL_GROUPS:
+                continue
+            points, faces = triangulate(self._model, int(geom))
+            in_world = points @ self._data.geom_xmat[geom].reshape(3, 3).T + self._data.geom_xpos[geom]
+            vertices.append(in_world @ base_from_world[:3, :3].T + base_from_world[:3, 3])
+            triangles.append(faces + count)
+            colours.append(np.tile(self._colour(int(geom)), (len(points), 1)))
+            count += len(points)
+        return RobotShape(
+            np.concatenate(vertices).astype(np.float32),
+            np.concatenate(triangles).astype(np.int32),
+            np.concatenate(colours).astype(np.uint8),
+        )
+
+    def _command_wheels(self) -> None:
+        v, w = self._speed
+        half = w * self._parameters.track_width / 2
+        self._data.ctrl[self._left] = (v - half) / self._parameters.wheel_radius
+        self._data.ctrl[self._right] = (v + half) / self._parameters.wheel_radius
+
+    def _wheel_angles(self) -> np.ndarray:
+        return self._data.qpos[self._encoders].copy()
+
+    def _reckon(self, turned: np.ndarray) -> None:
+        """Moves the odometry along the arc that the wheels tell of (2,) [rad]."""
+        left, right = turned * self._radii
+        turn = (right - left) / self._track_width
+        arc = upright_pose(np.zeros(3), turn)
+        middle = turn / 2
+        arc[:2, 3] = (left + right) / 2 * np.sinc(middle / np.pi) * np.array([np.cos(middle), np.sin(middle)])
+        self._odometry = self._odometry @ arc
+
+    def _mount(self, name: str) -> np.ndarray:
+        site = self._data.site(self._prefix + name)
+        world_from_site = np.eye(4)
+        world_from_site[:3, :3], world_from_site[:3, 3] = site.xmat.reshape(3, 3), site.xpos
+        return np.linalg.inv(self.true_world_from_base) @ world_from_site
+
+    def _colour(self, geom: int) -> np.ndarray:
+        material = int(self._model.geom_matid[geom])
+        rgba = self._model.mat_rgba[material] if material >= 0 else self._model.geom_rgba[geom]
+        return np.round(255 * rgba[:3])

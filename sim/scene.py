@@ -1,0 +1,228 @@
+"""Any MJCF in, the same scene with MoPAD in it out."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from sim.doors import Door, DoorTruth, find_doors, measure_door, put_doors
+from sim.errors import SimError
+from sim.leaves import bodies_below
+from sim.rays import Rays, geom_name
+from sim.start import freest_spot, pose_on_floor, require_surroundings
+
+log = logging.getLogger(__name__)
+
+ASSETS = Path(__file__).resolve().parent.parent / "assets"
+ROBOT_PREFIX = "mopad/"
+FOOTPRINT = (0.97, 0.57)
+"""Length and width of MoPAD over everything: the chassis, and the outside of the tracks with 4 mm each side [m]."""
+
+_ORIGIN_SITE = "beam_origin"
+_GRAVITY = (0.0, 0.0, -9.81)
+_LONGEST_STEP = 0.004
+_SINKING = 0.02
+"""Deeper contacts than this at the start mean that the robot stands in something [m]."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A compiled scene with MoPAD at its start pose and the doors where they were asked to be."""
+
+    model: mujoco.MjModel
+    """The scene and the robot, compiled once."""
+    data: mujoco.MjData
+    """Their state; everything that moves, moves here."""
+    name: str
+    """File name of the scene, such as `room.xml`."""
+    xml: str
+    """The scene with the robot as one MJCF text."""
+    doors: tuple[Door, ...]
+    """What closes which opening; found once."""
+    world_from_base: np.ndarray
+    """(4, 4) start pose of the robot's base."""
+    robot_bodies: frozenset[int]
+    """Ids of the robot's bodies: its own sensors do not see them."""
+    robot_prefix: str
+    """What the names of the robot's bodies, joints, sites and actuators begin with."""
+
+    def true_doors(self) -> tuple[DoorTruth, ...]:
+        """The doors as they stand now: the truth, for the evaluation only."""
+        return tuple(measure_door(self.model, self.data, door) for door in self.doors)
+
+
+def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, keyframe: str | None = None) -> Scene:
+    """Loads any MJCF, puts MoPAD into it and sets the doors.
+
+    The state is the keyframe's of that name, else the first keyframe, else qpos0. MoPAD starts at a site named `start`,
+    else at the freest spot inside a room; a scene that already holds a MoPAD keeps it where it is. Doors stay where they
+    are put, as if wedged. The scene's own options stay, except for what driving needs: gravity (where there was none, the
+    scene's own bodies go on floating), contacts and actuation, the implicitfast integrator, at most 4 ms a step.
+
+    Args:
+        path: the MJCF file.
+        door_angles: opening of doors from closed [rad], by the name of the leaf's joint or body.
+        keyframe: name of the keyframe to start from.
+
+    Raises:
+        SimError: one line that says what is wrong with the scene, the keyframe, the doors or the start, and where.
+    """
+    spec = _read(path)
+    held = _robot_prefix(spec)
+    prefix = _attach_robot(spec) if held is None else held
+    _make_drivable(spec, prefix)
+
+    def prepare() -> tuple[mujoco.MjModel, mujoco.MjData, tuple[Door, ...]]:
+        model = _compile(spec, path)
+        data = mujoco.MjData(model)
+        _reset(model, data, keyframe, path)
+        doors = find_doors(model, data)
+        put_doors(model, data, doors, door_angles or {})
+        return model, data, doors
+
+    model, data, doors = prepare()
+    robot_bodies = bodies_below(model, model.body(f"{prefix}base").id)
+    try:
+        pose = _start_pose(model, data, prefix, robot_bodies, held is not None)
+        if not _carries(model, data, robot_bodies, pose):
+            _lay_floor(spec, float(pose[2, 3]))
+            model, data, doors = prepare()
+        set_base(model, data, prefix, pose)
+        _require_free(model, data, robot_bodies, pose)
+    except SimError as error:
+        raise SimError(f"scene {path}: {error}") from None
+    return Scene(model, data, path.name, spec.to_xml(), doors, pose, robot_bodies, prefix)
+
+
+def _read(path: Path) -> mujoco.MjSpec:
+    if not path.is_file():
+        raise SimError(f"scene {path}: no such file")
+    try:
+        return mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        text = _one_line(error)
+        not_xml = ("XML parse error", "ParseXML", "could not find decoder")
+        raise SimError(
+            f"scene {path}: {'is not XML' if text.startswith(not_xml) else 'does not compile'}: {text}"
+        ) from None
+
+
+def _compile(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise SimError(f"scene {path}: does not compile: {_one_line(error)}") from None
+
+
+def _one_line(error: Exception) -> str:
+    return ", ".join(part.strip() for part in str(error).splitlines() if part.strip())
+
+
+def _robot_prefix(spec: mujoco.MjSpec) -> str | None:
+    """The prefix of a MoPAD that the scene already holds, known by its scanner's beam origin above its base."""
+    names = {body.name for body in spec.bodies}
+    for site in spec.sites:
+        prefix = site.name.removesuffix(_ORIGIN_SITE)
+        if site.name.endswith(_ORIGIN_SITE) and {f"{prefix}base", f"{prefix}vz400"} <= names:
+            return prefix
+    return None
+
+
+def _attach_robot(spec: mujoco.MjSpec) -> str:
+    taken = [body.name for body in spec.bodies]
+    prefix = ROBOT_PREFIX
+    while any(name.startswith(prefix) for name in taken):
+        prefix = f"_{prefix}"
+    robot = mujoco.MjSpec.from_file(str(ASSETS / "mopad" / "mopad.xml"))
+    spec.attach(robot, prefix=prefix, frame=spec.worldbody.add_frame())
+    return prefix
+
+
+def _make_drivable(spec: mujoco.MjSpec, prefix: str) -> None:
+    """Gives the physics what a driving robot needs, and leaves everything else as the user has it."""
+    bits = mujoco.mjtDisableBit
+    no_gravity = bool(spec.option.disableflags & bits.mjDSBL_GRAVITY) or spec.option.gravity[2] > -1.0
+    if no_gravity:
+        log.info("the scene has no gravity: MoPAD gets it, the scene's own bodies go on floating")
+        for body in spec.bodies[1:]:
+            if not body.name.startswith(prefix):
+                body.gravcomp = 1.0
+        spec.option.gravity = _GRAVITY
+    needed = (
+        bits.mjDSBL_GRAVITY,
+        bits.mjDSBL_CONTACT,
+        bits.mjDSBL_CONSTRAINT,
+        bits.mjDSBL_ACTUATION,
+        bits.mjDSBL_LIMIT,
+    )
+    for bit in needed:
+        spec.option.disableflags &= ~int(bit)
+    if spec.option.integrator != mujoco.mjtIntegrator.mjINT_IMPLICIT:
+        spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    spec.option.timestep = min(spec.option.timestep, _LONGEST_STEP)
+
+
+def _reset(model: mujoco.MjModel, data: mujoco.MjData, keyframe: str | None, path: Path) -> None:
+    names = [model.key(index).name for index in range(model.nkey)]
+    if keyframe is not None and keyframe not in names:
+        have = ", ".join(map(repr, names)) or "none"
+        raise SimError(f"scene {path}: no keyframe {keyframe!r}; it has {have}")
+    if model.nkey:
+        mujoco.mj_resetDataKeyframe(model, data, names.index(keyframe) if keyframe is not None else 0)
+        data.qvel[:] = 0.0
+    mujoco.mj_forward(model, data)
+
+
+def _start_pose(
+    model: mujoco.MjModel, data: mujoco.MjData, prefix: str, robot_bodies: frozenset[int], held: bool
+) -> np.ndarray:
+    """Pose (4, 4) of the base on the floor, with walls around and nothing in the way."""
+    rays = Rays(model, data, robot_bodies)
+    site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, "start")
+    if held:
+        base = data.body(f"{prefix}base")
+        pose = pose_on_floor(rays, base.xpos, base.xmat.reshape(3, 3)[:, 0])
+    elif site >= 0:
+        pose = pose_on_floor(rays, data.site_xpos[site], data.site_xmat[site].reshape(3, 3)[:, 0])
+    else:
+        pose = freest_spot(model, data, rays)
+    require_surroundings(rays, pose, FOOTPRINT)
+    return pose
+
+
+def _carries(model: mujoco.MjModel, data: mujoco.MjData, robot_bodies: frozenset[int], pose: np.ndarray) -> bool:
+    """Whether the floor at the start is one to stand on; many scenes have floors that are pictures only."""
+    floor = Rays(model, data, robot_bodies, only_solid=True).floor_below(pose[:3, 3] + [0, 0, 0.3], 0.35)
+    return floor is not None
+
+
+def _lay_floor(spec: mujoco.MjSpec, height: float) -> None:
+    """Lays an invisible plane that carries the robot and touches nothing else."""
+    log.info("the floor has no collisions: MoPAD drives on a plane at z = %.3f m", height)
+    spec.worldbody.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], pos=[0, 0, height], group=3, contype=1 << 30, conaffinity=0
+    )
+
+
+def set_base(model: mujoco.MjModel, data: mujoco.MjData, prefix: str, world_from_base: np.ndarray) -> None:
+    """Sets the robot down at a pose (4, 4), at rest, and updates what follows from it."""
+    joint = model.joint(f"{prefix}free")
+    start, speed = int(joint.qposadr[0]), int(joint.dofadr[0])
+    data.qpos[start : start + 3] = world_from_base[:3, 3]
+    mujoco.mju_mat2Quat(data.qpos[start + 3 : start + 7], np.ascontiguousarray(world_from_base[:3, :3]).ravel())
+    data.qvel[speed : speed + 6] = 0.0
+    mujoco.mj_forward(model, data)
+
+
+def _require_free(model: mujoco.MjModel, data: mujoco.MjData, robot_bodies: frozenset[int], pose: np.ndarray) -> None:
+    for contact in data.contact:
+        mine = [int(model.geom_bodyid[geom]) in robot_bodies for geom in contact.geom]
+        if contact.dist < -_SINKING and mine[0] != mine[1]:
+            other = int(contact.geom[0] if mine[1] else contact.geom[1])
+            x, y, z = pose[:3, 3]
+            raise SimError(f"the start at ({x:.2f}, {y:.2f}, {z:.2f}) is inside {geom_name(model, other)}")
