@@ -36,7 +36,7 @@ AMBIENT_DISTANCE = 3.0
 
 _NEAREST = 0.3
 """Nearest surface that the flash's view covers up to the edge of the picture [m]."""
-_LUMINANCE = np.float32([0.2126, 0.7152, 0.0722])
+_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 _LEVELS = 2**12
 """Of the analogue-digital converter."""
 
@@ -46,14 +46,18 @@ class CameraParameters(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    width: int = Field(712, ge=16, le=2848, description="Picture width, upright [px]; the D90 has 2848.")
-    height: int = Field(1072, ge=16, le=4288, description="Picture height [px]; the D90 has 4288.")
-    shots: int = Field(10, ge=7, le=36, description="Photographs a turn: 7 overlap by 10 %, 10 by 39 %.")
-    focal_length: float = Field(0.014, ge=0.010, le=0.085, description="[m]")
-    rise: float = Field(0.20, ge=0, le=1, description="Camera centre above the scanner's beams, on its axis [m].")
-    ambient: float = Field(0.5, ge=0, description="Light in the room, relative to the flash's at 3 m.")
-    noise: bool = Field(True, description="Photon and read noise.")
-    highlight_level: float = Field(0.05, gt=0, description="Gloss, in parts of full scale, that counts as a highlight.")
+    width: int = Field(default=712, ge=16, le=2848, description="Picture width, upright [px]; the D90 has 2848.")
+    height: int = Field(default=1072, ge=16, le=4288, description="Picture height [px]; the D90 has 4288.")
+    shots: int = Field(default=10, ge=7, le=36, description="Photographs a turn: 7 overlap by 10 %, 10 by 39 %.")
+    focal_length: float = Field(default=0.014, ge=0.010, le=0.085, description="[m]")
+    rise: float = Field(
+        default=0.20, ge=0, le=1, description="Camera centre above the scanner's beams, on its axis [m]."
+    )
+    ambient: float = Field(default=0.5, ge=0, description="Light in the room, relative to the flash's at 3 m.")
+    noise: bool = Field(default=True, description="Photon and read noise.")
+    highlight_level: float = Field(
+        default=0.05, gt=0, description="Gloss, in parts of full scale, that counts as a highlight."
+    )
 
     @property
     def focal_px(self) -> tuple[float, float]:
@@ -162,7 +166,7 @@ class Camera:
         )
         light = flash_light(inverse_depth, seen, FLASH, window, gloss)
         light.diffuse[...] += np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
-        return _Exposure(cv2.LUT(albedo, _LINEAR), light)
+        return _Exposure(np.asarray(cv2.LUT(albedo, _LINEAR), np.float32), light)
 
     def _develop(self, exposed: _Exposure, gain: float, scanner_from_camera: NDArray[np.float64], seed: int) -> Photo:
         """Sensor and raw converter: photons, noise, clipping, 12 bit, sRGB."""

@@ -4,4 +4,4 @@ from __future__ import annotations
 
 
 class SimError(Exception):
-    """A scene, a file or the machine does not allow what was asked; the message is one line that says what and where."""
+    """A scene, a file or the machine does not allow what was asked. The message is one line: what, and where."""

@@ -24,11 +24,13 @@ class HokuyoParameters(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    noise: bool = Field(True, description="Range noise and rounding to 1 mm.")
-    range_min: float = Field(0.02, ge=0, description="[m] (SCIP manual)")
-    range_max: float = Field(5.6, gt=0, description="[m] (SCIP manual)")
-    noise_near: float = Field(0.01, ge=0, description="One sigma up to 1 m [m]: a third of the stated 30 mm.")
-    noise_far: float = Field(0.01, ge=0, description="One sigma beyond 1 m, over range: a third of the stated 3 %.")
+    noise: bool = Field(default=True, description="Range noise and rounding to 1 mm.")
+    range_min: float = Field(default=0.02, ge=0, description="[m] (SCIP manual)")
+    range_max: float = Field(default=5.6, gt=0, description="[m] (SCIP manual)")
+    noise_near: float = Field(default=0.01, ge=0, description="One sigma up to 1 m [m]: a third of the stated 30 mm.")
+    noise_far: float = Field(
+        default=0.01, ge=0, description="One sigma beyond 1 m, over range: a third of the stated 3 %."
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +50,9 @@ class LaserScan:
 class Hokuyo:
     """A URG-04LX-UG01 in one world."""
 
-    angles = np.arange(FIRST_STEP - FRONT_STEP, LAST_STEP - FRONT_STEP + 1) * (2 * np.pi / STEPS_PER_TURN)
+    angles = np.arange(FIRST_STEP - FRONT_STEP, LAST_STEP - FRONT_STEP + 1, dtype=np.float64) * (
+        2 * np.pi / STEPS_PER_TURN
+    )
     """(682,) direction of each beam [rad]: 240 deg, symmetric to within a step."""
 
     def __init__(
@@ -91,7 +95,7 @@ class Hokuyo:
         return LaserScan(self._base_from_laser, self.angles, ranges.astype(np.float32), time)
 
     def _cast(self, data: mujoco.MjData, world_from_laser: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(682,) exact ranges [m]; infinite where there is nothing."""
+        """(682,) exact ranges [m]; NaN where there is nothing."""
         count = len(self.angles)
         beams = np.column_stack([np.cos(self.angles), np.sin(self.angles), np.zeros(count)])
         beams_in_world = np.ascontiguousarray(beams @ world_from_laser[:3, :3].T).ravel()
@@ -104,4 +108,4 @@ class Hokuyo:
             mujoco.mj_multiRay(
                 self._model, data, origin, beams_in_world, groups, True, -1, hit, ranges, None, count, reach
             )
-        return np.where(hit < 0, np.inf, ranges)
+        return np.where(hit < 0, np.nan, ranges)

@@ -11,7 +11,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Image = NDArray[np.float32]
+Image = NDArray[np.floating]
+"""float32 throughout."""
 
 _SHADOW_BIAS = 3e-3
 """Depth by which something must be nearer to the flash to throw a shadow, relative."""

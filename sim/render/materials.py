@@ -62,7 +62,7 @@ def _exponents(model: mujoco.MjModel) -> NDArray[np.float64]:
     return np.where(model.mat_roughness >= 0, 2 / roughness**4 - 2, _SHININESS_TO_EXPONENT * model.mat_shininess)
 
 
-def _mean_colours(model: mujoco.MjModel) -> NDArray[np.float64]:
+def _mean_colours(model: mujoco.MjModel) -> NDArray[np.floating]:
     """(ngeom, 3) mean linear colour of each geom."""
     rgba = effective_rgba(model)[:, :3].astype(np.float64)
     textures = np.append(model.mat_texid[:, mujoco.mjtTextureRole.mjTEXROLE_RGB], -1)[model.geom_matid]
@@ -74,7 +74,7 @@ def _mean_colours(model: mujoco.MjModel) -> NDArray[np.float64]:
     return colours
 
 
-def _texels(model: mujoco.MjModel, texture: int) -> NDArray[np.float64]:
+def _texels(model: mujoco.MjModel, texture: int) -> NDArray[np.floating]:
     """(N, 3) some texels of a texture, 0 to 1, spread evenly over it."""
     channels = int(model.tex_nchannel[texture])
     count = int(model.tex_height[texture]) * int(model.tex_width[texture])

@@ -21,7 +21,7 @@ SHOWN, HIDDEN = 0, mujoco.mjNGROUP - 1
 def effective_rgba(model: mujoco.MjModel) -> NDArray[np.float32]:
     """(ngeom, 4) colour that each geom is drawn in: its material's, unless its own differs from MuJoCo's default."""
     rgba = model.geom_rgba.copy()
-    from_material = (model.geom_matid >= 0) & (rgba == np.float32([0.5, 0.5, 0.5, 1])).all(axis=1)
+    from_material = (model.geom_matid >= 0) & (rgba == np.array([0.5, 0.5, 0.5, 1], np.float32)).all(axis=1)
     rgba[from_material] = model.mat_rgba[model.geom_matid[from_material]]
     return rgba
 

@@ -1,0 +1,127 @@
+"""A full turn of beams, cast as six rendered pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import cv2
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.render import Renderer, View, looking_along
+from sim.render.jumps import blocks_across_jumps
+
+WEDGES = 6
+"""Six pictures of 60 deg: pixels of about the same size everywhere, and one table for all six."""
+
+_MARGIN_PX = 3
+"""Pixels round a picture that no beam needs, but its neighbours do."""
+_DENSITY = 512, 1024
+"""Fewest and most pixels per unit of tangent, which is per radian in the middle of a picture."""
+
+
+def cast_panorama(
+    renderer: Renderer,
+    data: mujoco.MjData,
+    world_from_scanner: NDArray[np.float64],
+    elevations: NDArray[np.float64],
+    azimuths: NDArray[np.float64],
+    value_of_geom: NDArray[np.float32],
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Casts a grid of beams from one point.
+
+    Inverse depth is linear over a plane, and the raw depth buffer is affine in it. So interpolating the raw buffer
+    bilinearly is exact on planes, and it is turned into metres at the beams only.
+
+    Args:
+        renderer: of the world.
+        data: its state.
+        world_from_scanner: (4, 4) pose of the grid.
+        elevations: (E,) of the rows, within 70 deg of level [rad].
+        azimuths: (A,) of the columns, all round at equal steps, a multiple of six [rad].
+        value_of_geom: (ngeom + 1,) something to be looked up for what each beam meets.
+
+    Returns:
+        (E, A) inverse range [1/m], next to 0 where there is nothing; (E, A) value of the geom that was met.
+    """
+    wedge = _wedge(elevations.tobytes(), azimuths.tobytes())
+    inverse_range = np.empty((len(elevations), len(azimuths)), np.float32)
+    values = np.empty_like(inverse_range)
+    for k in range(WEDGES):
+        columns = slice(k * wedge.columns, (k + 1) * wedge.columns)
+        depth = renderer.depth(data, wedge.view(world_from_scanner, k))
+        raw = wedge.sample(depth.raw)
+        raw += np.float32(renderer.inverse_depth_offset / renderer.inverse_depth_scale)
+        inverse_range[:, columns] = cv2.multiply(raw, wedge.cosine, scale=renderer.inverse_depth_scale)
+        segments = np.asarray(cv2.remap(depth.segments, wedge.map_x, wedge.map_y, cv2.INTER_NEAREST), np.uint16)
+        values[:, columns] = value_of_geom[depth.geom_ids].take(segments)
+    return inverse_range, values
+
+
+@dataclass(frozen=True, eq=False)
+class _Wedge:
+    """A sixth of a panorama as a picture: where each beam pierces it."""
+
+    columns: int
+    azimuth: float
+    """Of the middle of the first wedge [rad]."""
+    half_width: float
+    """Of the window at unit distance."""
+    bottom: float
+    top: float
+    width: int
+    """[px]"""
+    height: int
+    """[px]"""
+    map_x: NDArray[np.float32]
+    """(E, columns) column of each beam in the picture, pixel centres at whole numbers [px]."""
+    map_y: NDArray[np.float32]
+    """(E, columns) row, counted from the bottom [px]."""
+    cosine: NDArray[np.float32]
+    """(E, columns) of the angle between beam and optical axis."""
+    block: NDArray[np.int32]
+    """(E, columns) flat index of the lower left of the four pixels round the beam."""
+
+    def view(self, world_from_scanner: NDArray[np.float64], number: int) -> View:
+        """The picture to be rendered for one of the wedges."""
+        pose = world_from_scanner @ looking_along(self.azimuth + number * 2 * np.pi / WEDGES)
+        return View(pose, -self.half_width, self.half_width, self.bottom, self.top, self.width, self.height)
+
+    def sample(self, raw: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(E, columns) raw depth at the beams: bilinear on a surface, the nearest pixel's where two surfaces meet."""
+        values = np.asarray(cv2.remap(raw, self.map_x, self.map_y, cv2.INTER_LINEAR), np.float32)
+        at_jump = np.flatnonzero(blocks_across_jumps(raw).ravel().take(self.block))
+        x, y = np.rint(self.map_x.ravel()[at_jump]), np.rint(self.map_y.ravel()[at_jump])
+        values.ravel()[at_jump] = raw[y.astype(np.intp), x.astype(np.intp)]
+        return values
+
+
+@lru_cache(maxsize=2)
+def _wedge(elevations_bytes: bytes, azimuths_bytes: bytes) -> _Wedge:
+    """The tables of a grid of beams, which depend on nothing else."""
+    elevations = np.frombuffer(elevations_bytes)[:, None]
+    azimuths = np.frombuffer(azimuths_bytes)
+    density = np.clip(len(azimuths) / (2 * np.pi), *_DENSITY)  # one pixel a beam, in the middle of the picture
+    azimuths = azimuths[: len(azimuths) // WEDGES]
+    middle = float(azimuths.mean())
+    cos_azimuth, tan_azimuth = np.cos(azimuths - middle), np.tan(azimuths - middle)
+    heights = np.tan(elevations) / cos_azimuth
+    width = 2 * int(np.ceil(density * tan_azimuth.max() + _MARGIN_PX))
+    below, above = (int(np.ceil(density * edge + _MARGIN_PX)) for edge in (-heights.min(), heights.max()))
+    map_x = np.broadcast_to(width / 2 - density * tan_azimuth - 0.5, heights.shape)  # azimuth runs to the left
+    map_y = below + density * heights - 0.5  # -0.5: from pixel edges, as OpenGL counts, to OpenCV's centres
+    return _Wedge(
+        columns=len(azimuths),
+        azimuth=middle,
+        half_width=width / 2 / density,
+        bottom=-below / density,
+        top=above / density,
+        width=width,
+        height=below + above,
+        map_x=map_x.astype(np.float32),
+        map_y=map_y.astype(np.float32),
+        cosine=(np.cos(elevations) * cos_azimuth).astype(np.float32),
+        block=np.floor(map_y).astype(np.int32) * width + np.floor(map_x).astype(np.int32),
+    )
