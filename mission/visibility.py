@@ -44,58 +44,105 @@ class Sight:
 def look(scan: PosedSample, places_in_world: NDArray[np.floating]) -> Sight:
     """Looks a scan's range image up in the direction of places (M, 3); the nearest beam answers."""
     sample = scan.sample
-    x, y, z = transformed(places_in_world.astype(float), inverted(scan.world_from_scanner)).T
-    distance = np.sqrt(x * x + y * y + z * z)
-    row = _nearest(np.arctan2(z, np.hypot(x, y)), sample.elevations)
-    pitch = float(sample.azimuths[1] - sample.azimuths[0])
-    column = np.rint(((np.arctan2(y, x) - sample.azimuths[0]) % (2 * np.pi)) / pitch).astype(int)
-    if abs(len(sample.azimuths) * pitch - 2 * np.pi) < 1.5 * pitch:  # a full turn closes
-        column %= len(sample.azimuths)
+    distance, row, column = _beams(scan, places_in_world)
     in_view = (row >= 0) & (row < len(sample.elevations)) & (column < len(sample.azimuths))
     measured = np.full(len(distance), np.nan)
     measured[in_view] = sample.ranges[row[in_view], column[in_view]]
     return Sight(distance=distance, measured=measured, in_view=in_view)
 
 
-def looked_through(
-    places_in_world: NDArray[np.floating],
-    normals_in_world: NDArray[np.floating],
-    scans: Sequence[PosedSample],
-    *,
-    behind: float,
-    parameters: VisibilityParameters,
-) -> Mask:
-    """Tells which scans looked through places on surfaces, and met nothing until well behind the surface.
+class Visibility:
+    """What several scans say together.
 
-    A beam without a return went into the void, or met something nearer than the scanner's minimum range. It counts
-    only if the place is farther than that, the surface not too oblique, nothing known stands close to the scanner
-    there, and - as soon as there are other scans - one of them saw that the beam's first metres are free.
+    A beam without a return went into the void, or met something nearer than the scanner's minimum range. It counts as
+    having passed a place only if the place is farther than that, the surface there not too oblique, nothing known
+    stands close to the scanner in that direction, and the beam's first metres are free: one of the other scans saw
+    that, or, as long as there is no other, the same scan sees the floor below, on which a near thing would throw its
+    shadow.
 
     Args:
-        places_in_world: (M, 3) [m].
-        normals_in_world: (M, 3) unit normals of the surfaces.
         scans: All scans that may have looked.
-        behind: A beam has passed when it went on for this depth behind the surface [m].
         parameters: Limits.
-
-    Returns:
-        (S, M) True where scan s looked through place m.
     """
-    passed = np.zeros((len(scans), len(places_in_world)), bool)
-    shadows = [_near_directions(scan, scans, parameters) for scan in scans]
-    for number, scan in enumerate(scans):
-        sight = look(scan, places_in_world)
-        towards = scan.scanner_in_world - places_in_world
-        cosine = np.abs(np.sum(towards * normals_in_world, axis=1)) / np.maximum(sight.distance, 1e-9)
-        passed[number] = sight.measured > sight.distance + behind / np.maximum(cosine, 1e-3)
-        void = sight.in_view & np.isnan(sight.measured) & (sight.distance > parameters.minimum_range)
-        void &= cosine > np.cos(parameters.maximum_incidence)
-        void[void] = ~_shadowed(scan, places_in_world[void], shadows[number], parameters)
-        others = [(other, shadow) for k, (other, shadow) in enumerate(zip(scans, shadows, strict=True)) if k != number]
-        if others:
-            void[void] = _free_near(scan, places_in_world[void], others, parameters)
-        passed[number] |= void
-    return passed
+
+    def __init__(self, scans: Sequence[PosedSample], parameters: VisibilityParameters | None = None) -> None:
+        self.scans = tuple(scans)
+        self.parameters = parameters or VisibilityParameters()
+        self._shadows = [_near_directions(scan, scans, self.parameters) for scan in scans]
+
+    def looked_through(
+        self, places_in_world: NDArray[np.floating], normals_in_world: NDArray[np.floating], *, behind: float
+    ) -> Mask:
+        """Tells which scans looked through places on surfaces, and met nothing until well behind the surface.
+
+        Args:
+            places_in_world: (M, 3) [m].
+            normals_in_world: (M, 3) unit normals of the surfaces, of either side.
+            behind: A beam has passed when it went on for this depth behind the surface [m].
+
+        Returns:
+            (S, M) True where scan s looked through place m.
+        """
+        passed = np.zeros((len(self.scans), len(places_in_world)), bool)
+        for number, scan in enumerate(self.scans):
+            sight = look(scan, places_in_world)
+            towards = scan.scanner_in_world - places_in_world
+            cosine = np.abs(np.sum(towards * normals_in_world, axis=1)) / np.maximum(sight.distance, 1e-9)
+            passed[number] = sight.measured > sight.distance + behind / np.maximum(cosine, 1e-3)
+            steep = cosine > np.cos(self.parameters.maximum_incidence)
+            void = self._void(number, places_in_world, sight) & steep
+            void[void] = self._free_near(number, places_in_world[void])
+            passed[number] |= void
+        return passed
+
+    def _void(self, number: int, places: NDArray[np.floating], sight: Sight) -> Mask:
+        """Places (M,) in whose direction nothing came back, although nothing known is too close to return."""
+        void = sight.in_view & np.isnan(sight.measured) & (sight.distance > self.parameters.minimum_range)
+        cells = _direction_cells(self.scans[number], places[void], self.parameters)
+        void[void] = ~self._shadows[number][cells]
+        return void
+
+    def _free_near(self, number: int, places: NDArray[np.floating]) -> Mask:
+        """Places (M,) whose beam's stretch within the minimum range was seen free by other scans.
+
+        Its first 0.4 m are free because the robot stands there. A lone scan sees at least whether the floor is there.
+        """
+        if len(self.scans) == 1:
+            return _over_floor(self.scans[number], places)
+        origin = self.scans[number].scanner_in_world
+        beams = places - origin
+        beams = beams / np.sqrt(np.sum(beams**2, axis=1, keepdims=True))
+        free = np.ones(len(places), bool)
+        for reach in np.linspace(0.4, self.parameters.minimum_range, 5):
+            spots = origin + reach * beams
+            seen = np.zeros(len(places), bool)
+            for other, scan in enumerate(self.scans):
+                if other != number:
+                    sight = look(scan, spots)
+                    seen |= (sight.measured > sight.distance) | self._void(other, spots, sight)
+            free &= seen
+        return free
+
+
+def _beams(
+    scan: PosedSample, places: NDArray[np.floating]
+) -> tuple[NDArray[np.float64], NDArray[np.int_], NDArray[np.int_]]:
+    """Distance [m], and row and column of the nearest beam, of places (M, 3); outside the image where none was sent."""
+    sample = scan.sample
+    x, y, z = transformed(places.astype(float), inverted(scan.world_from_scanner)).T
+    row = _nearest(np.arctan2(z, np.hypot(x, y)), sample.elevations)
+    pitch = float(sample.azimuths[1] - sample.azimuths[0])
+    column = np.rint(((np.arctan2(y, x) - sample.azimuths[0]) % (2 * np.pi)) / pitch).astype(int)
+    if abs(len(sample.azimuths) * pitch - 2 * np.pi) < 1.5 * pitch:  # a full turn closes
+        column %= len(sample.azimuths)
+    return np.sqrt(x * x + y * y + z * z), row, column
+
+
+def _over_floor(scan: PosedSample, places: NDArray[np.floating]) -> Mask:
+    """Places (M,) in whose azimuth something comes back to the lowest beams (5 deg)."""
+    lowest = scan.sample.elevations < scan.sample.elevations[-1] + np.deg2rad(5)
+    floor = np.isfinite(scan.sample.ranges[lowest]).mean(axis=0) > 0.5
+    return floor[_beams(scan, places)[2]]
 
 
 def _nearest(angles: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[np.int_]:
@@ -127,32 +174,3 @@ def _direction_cells(
         ((elevation + np.pi / 2) / parameters.shadow).astype(int),
         ((azimuth + np.pi) / parameters.shadow).astype(int),
     )
-
-
-def _shadowed(scan: PosedSample, places: NDArray[np.floating], shadow: Mask, parameters: VisibilityParameters) -> Mask:
-    return shadow[_direction_cells(scan, places, parameters)]
-
-
-def _free_near(
-    scan: PosedSample,
-    places: NDArray[np.floating],
-    others: Sequence[tuple[PosedSample, Mask]],
-    parameters: VisibilityParameters,
-) -> Mask:
-    """Places (M,) whose beam's stretch within the minimum range was seen free by other scans.
-
-    The first 0.4 m are free because the robot stands there.
-    """
-    origin = scan.scanner_in_world
-    beams = places - origin
-    beams = beams / np.sqrt(np.sum(beams**2, axis=1, keepdims=True))
-    free = np.ones(len(places), bool)
-    for reach in np.linspace(0.4, parameters.minimum_range, 5):
-        spots = origin + reach * beams
-        seen = np.zeros(len(places), bool)
-        for other, shadow in others:
-            sight = look(other, spots)
-            void = sight.in_view & np.isnan(sight.measured) & (sight.distance > parameters.minimum_range)
-            seen |= (sight.measured > sight.distance) | (void & ~_shadowed(other, spots, shadow, parameters))
-        free &= seen
-    return free
