@@ -58,8 +58,6 @@ class Hokuyo:
     def __init__(
         self,
         model: mujoco.MjModel,
-        *,
-        base_from_laser: NDArray[np.float64] | None = None,
         hidden_bodies: Collection[int] = (),
         parameters: HokuyoParameters | None = None,
     ) -> None:
@@ -67,17 +65,20 @@ class Hokuyo:
 
         Args:
             model: the world.
-            base_from_laser: (4, 4) where the laser sits on the robot; handed on with each sweep.
             hidden_bodies: ids of bodies that the laser does not see: the robot that carries it.
             parameters: how to measure.
         """
         self.parameters = parameters or HokuyoParameters()
         self._model = model
-        self._base_from_laser = np.eye(4) if base_from_laser is None else base_from_laser
         self._visible = visible_geoms(model, hidden_bodies)
 
     def measure(
-        self, data: mujoco.MjData, world_from_laser: NDArray[np.float64], rng: np.random.Generator, time: int
+        self,
+        data: mujoco.MjData,
+        world_from_laser: NDArray[np.float64],
+        rng: np.random.Generator,
+        time: int,
+        base_from_laser: NDArray[np.float64] | None = None,
     ) -> LaserScan:
         """Sweeps once; glass is let through.
 
@@ -86,13 +87,15 @@ class Hokuyo:
             world_from_laser: (4, 4) pose of the laser.
             rng: source of the noise.
             time: mission time [ns].
+            base_from_laser: (4, 4) where the laser sits on the robot, handed on in the result; identity if left out.
         """
         ranges = self._cast(data, world_from_laser)
         if self.parameters.noise:
             sigma = np.maximum(self.parameters.noise_near, self.parameters.noise_far * ranges)
             ranges = np.rint((ranges + sigma * rng.standard_normal(len(ranges))) / RESOLUTION) * RESOLUTION
         ranges[(ranges < self.parameters.range_min) | (ranges > self.parameters.range_max)] = np.nan
-        return LaserScan(self._base_from_laser, self.angles, ranges.astype(np.float32), time)
+        mount = np.eye(4) if base_from_laser is None else base_from_laser
+        return LaserScan(mount, self.angles, ranges.astype(np.float32), time)
 
     def _cast(self, data: mujoco.MjData, world_from_laser: NDArray[np.float64]) -> NDArray[np.float64]:
         """(682,) exact ranges [m]; NaN where there is nothing."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -35,7 +36,7 @@ class Pattern:
     def elevations(self) -> NDArray[np.float64]:
         """(rows,) elevation of each row, top first [rad]."""
         step = 2 * np.pi / self.columns
-        return float(np.radians(ELEVATION_TOP_DEG)) - (np.arange(self.rows, dtype=np.float64) + 0.5) * step
+        return math.radians(ELEVATION_TOP_DEG) - (np.arange(self.rows, dtype=np.float64) + 0.5) * step
 
     def azimuths(self) -> NDArray[np.float64]:
         """(columns,) azimuth of each column, anticlockwise from the scanner's x axis [rad]."""
