@@ -115,10 +115,11 @@ def road_map(
     turning, needed = footprint.half_diagonal + parameters.margin, footprint.width / 2 + parameters.margin
     goals = np.empty((0, 2)) if goals is None else np.asarray(goals, dtype=np.float64).reshape(-1, 2)
     start = np.asarray(world_from_base, dtype=np.float64)[:2, 3]
-    way_out = _way_out(grid, world_from_base, footprint, parameters)
-    if way_out is None:
+    turns_at_start = bool(grid.clearance_at(start) >= turning)
+    escape = np.empty((0, 2)) if turns_at_start else _way_out(grid, world_from_base, footprint, parameters)
+    if not turns_at_start and len(escape) == 0:
         grid = _trusting(grid, start, turning)
-    escape = np.empty((0, 2)) if way_out is None else way_out[None]
+        turns_at_start = bool(grid.clearance_at(start) >= turning)
     raster = _roomiest_points(grid, parameters.spacing, turning)
     if within is not None:
         raster = raster[_inside(raster, within)]
@@ -126,8 +127,7 @@ def road_map(
 
     usable = np.flatnonzero(grid.clearance_at(points) >= turning)
     first, second, clear = _legs(grid, points, usable, longest=parameters.longest_leg, needed=needed)
-    turns_at_start = 0 in usable
-    if way_out is not None and not turns_at_start:
+    if len(escape):
         first, second = np.append(first, 0), np.append(second, len(points) - 1)
         clear = np.append(clear, np.float32(needed))
     metres, before = _shortest(
@@ -187,8 +187,8 @@ def _way_out(
     world_from_base: NDArray[np.float64],
     footprint: Footprint,
     parameters: NavigationParameters,
-) -> NDArray[np.float64] | None:
-    """(2,) the nearest point straight ahead or back where the robot can turn; None if there is none."""
+) -> NDArray[np.float64]:
+    """(0 or 1, 2) the nearest point straight ahead or back where the robot can turn."""
     start, ahead = world_from_base[:2, 3], world_from_base[:2, 0] / np.hypot(*world_from_base[:2, 0])
     steps = np.arange(0.0, parameters.escape + 1e-9, grid.resolution)
     ways = start + steps[:, None] * np.array([1.0, -1.0])[:, None, None] * ahead  # (2, steps, 2): ahead and back
@@ -197,10 +197,8 @@ def _way_out(
     tightest = max(min(footprint.width / 2 + parameters.margin, clear[0, 0]), footprint.width / 2 - grid.resolution)
     passable = np.logical_and.accumulate(clear >= tightest - 1e-6, axis=1)
     reached = passable & (clear >= footprint.half_diagonal + parameters.margin)
-    if not reached.any():
-        return None
-    way, step = min(np.argwhere(reached).tolist(), key=lambda found: found[1])
-    return ways[way, step]
+    found = sorted(np.argwhere(reached).tolist(), key=lambda way_and_step: way_and_step[1])
+    return np.array([ways[way, step] for way, step in found[:1]]).reshape(-1, 2)
 
 
 def _trusting(grid: OccupancyGrid, start: NDArray[np.float64], turning: float) -> OccupancyGrid:
