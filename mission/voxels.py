@@ -201,7 +201,7 @@ def _wall_patch(wall: WallRectangle, parameters: VoxelParameters) -> _Patch:
 
 
 def _extents(length: float, size: float) -> Floats:
-    """What of each cell is within the length [m]; the last one may be shorter, but a centimetre gets none of its own."""
+    """What of each cell is within the length [m]; the last one may be shorter, but a centimetre gets no cell."""
     count = max(1, int(np.ceil(length / size - 0.05)))
     return np.minimum(size, length - size * np.arange(count))
 

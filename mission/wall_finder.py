@@ -26,7 +26,6 @@ class WallParameters(BaseModel):
     least_top: float = Field(default=1.8, gt=0, description="a wall without a ceiling is at least this high [m]")
     doorway: float = Field(default=1.5, ge=0, description="a gap in a wall up to this wide is bridged [m]")
     hidden_gap: float = Field(default=4.0, ge=0, description="bridged up to this if nobody looked through it [m]")
-    wall_share: float = Field(default=0.15, ge=0, le=1, description="of an edge of the room that is seen to be wall")
     lines: LineParameters = Field(default_factory=LineParameters)
 
 
@@ -176,9 +175,10 @@ class WallFinder:
         ]
 
     def _is_wall(self, number: int, a: Floats, b: Floats, columns: Columns) -> bool:
+        """Whether enough of it was seen; the rest may be hidden."""
         pieces = [Segment(number, low, high) for low, high in zip(columns.lows, columns.highs, strict=True)]
-        long_enough = np.hypot(*(b - a)) >= self.parameters.lines.least_length
-        return bool(long_enough and covered_share(self.lines[number], a, b, pieces) > self.parameters.wall_share)
+        length, least = float(np.hypot(*(b - a))), self.parameters.lines.least_length
+        return length >= least and covered_share(self.lines[number], a, b, pieces) * length > 0.5 * least
 
     def _rectangle(self, line: PlanLine, a: Floats, b: Floats, top: float) -> WallRectangle:
         """The wall from a to b, the room on the left: seen from inside b is its left end."""
