@@ -1,0 +1,355 @@
+"""The next best scan, in rooms whose hidden parts are known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from detector.room import VoxelLabel
+from mission.grid import Cell, Footprint, OccupancyGrid
+from mission.planning import Plan, PlanningParameters, plan_next_scan, worth
+from mission.prediction import Cells, Obstacles, ScannerView, find_obstacles, prospect
+from mission.survey import Survey, SurveyParameters
+
+OCCUPIED, OCCLUDED, OPENING = VoxelLabel.OCCUPIED, VoxelLabel.OCCLUDED, VoxelLabel.OPENING
+WIDTH, DEPTH, HEIGHT, SCANNER = 6.0, 5.0, 2.6, 1.2
+ROOM = np.array([[0.0, 0.0], [WIDTH, 0.0], [WIDTH, DEPTH], [0.0, DEPTH]])
+MOUNT = np.eye(4)
+MOUNT[2, 3] = SCANNER
+NO_OBSTACLES = Obstacles(cubes=np.empty((0, 3)), walls=np.empty((0, 2)))
+
+
+@dataclass(frozen=True)
+class Voxels:
+    """The table that planning takes."""
+
+    cells_in_world: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    labels: NDArray[np.uint8]
+    areas: NDArray[np.float64]
+
+    def labelled(
+        self, label: VoxelLabel, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]
+    ) -> Voxels:
+        """The cells within a box get a label."""
+        low, high = np.array([x, y, z]).T
+        inside = ((self.cells_in_world >= low) & (self.cells_in_world <= high)).all(axis=1)
+        return replace(self, labels=np.where(inside, np.uint8(label), self.labels))
+
+
+def room_voxels() -> Voxels:
+    """All six sides of the room in cells of 0.2 m, all of them occupied."""
+    centres, normals = [], []
+    for axis, extent in enumerate((WIDTH, DEPTH, HEIGHT)):
+        others = [np.arange(0.1, e, 0.2) for k, e in enumerate((WIDTH, DEPTH, HEIGHT)) if k != axis]
+        flat = np.stack(np.meshgrid(*others, indexing="ij"), axis=-1).reshape(-1, 2)
+        for at, inward in ((0.0, 1.0), (extent, -1.0)):
+            centres.append(np.insert(flat, axis, at, axis=1))
+            normals.append(np.tile(inward * np.eye(3)[axis], (len(flat), 1)))
+    cells = np.concatenate(centres)
+    labels = np.full(len(cells), OCCUPIED, np.uint8)
+    return Voxels(cells, np.concatenate(normals), labels, np.full(len(cells), 0.04))
+
+
+def box_points(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> NDArray[np.float64]:
+    """A box full of points, 5 cm apart."""
+    axes = [np.arange(low, high + 1e-9, 0.05) for low, high in (x, y, z)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def free_grid(x: tuple[float, float] = (0.0, WIDTH), y: tuple[float, float] = (0.0, DEPTH)) -> OccupancyGrid:
+    """Free floor in a rectangle of the room, the rest occupied."""
+    grid = OccupancyGrid(np.array([-0.5, -0.5]), 0.05, np.full((120, 140), Cell.OCCUPIED, np.uint8))
+    c = grid.centres()
+    free = (c[..., 0] > x[0]) & (c[..., 0] < x[1]) & (c[..., 1] > y[0]) & (c[..., 1] < y[1])
+    return replace(grid, cells=np.where(free, Cell.FREE, Cell.OCCUPIED).astype(np.uint8))
+
+
+def at(x: float, y: float) -> NDArray[np.float64]:
+    world_from_base = np.eye(4)
+    world_from_base[:2, 3] = x, y
+    return world_from_base
+
+
+def plan(
+    voxels: Voxels,
+    *,
+    scanners: list[tuple[float, float]],
+    points: NDArray[np.float64] | None = None,
+    grid: OccupancyGrid | None = None,
+    parameters: PlanningParameters | None = None,
+) -> Plan:
+    """Plan from the last of the places that were scanned from."""
+    return plan_next_scan(
+        voxels,
+        np.empty((0, 3)) if points is None else points,
+        grid or free_grid(),
+        world_from_base=at(*scanners[-1]),
+        base_from_scanner=MOUNT,
+        scanners_in_world=np.array([(x, y, SCANNER) for x, y in scanners]),
+        floor_height=0.0,
+        room=ROOM,
+        footprint=Footprint(length=1.0, width=0.55),
+        parameters=parameters,
+    )
+
+
+def sees(cell: tuple[float, float, float], normal: tuple[float, float, float]) -> bool:
+    """Whether a scanner at the origin sees one cell in the open."""
+    cells = Cells(np.array([cell]), np.array([normal]))
+    return bool(prospect(np.zeros(3), cells, NO_OBSTACLES, ScannerView()).seen[0])
+
+
+def test_cells_are_seen_within_range_field_of_view_and_incidence_only() -> None:
+    towards_x = (-1.0, 0.0, 0.0)
+    assert sees((1.6, 0, 0), towards_x)
+    assert not sees((1.4, 0, 0), towards_x)  # nearer than 1.5 m nothing returns
+    assert not sees((10.5, 0, 0), towards_x)
+    assert not sees((1.6, 0, 0), (1.0, 0.0, 0.0))  # from behind
+    # tan 60 = 1.73 and tan 40 = 0.839: the field of view above and below 2 m
+    assert sees((2.0, 0, 3.40), towards_x) and not sees((2.0, 0, 3.55), towards_x)
+    assert sees((2.0, 0, -1.65), towards_x) and not sees((2.0, 0, -1.70), towards_x)
+    # tan 75 = 3.73: oblique by 74.5 deg, and by 75.4 deg
+    assert sees((1.0, 3.60, 0), towards_x) and not sees((1.0, 3.85, 0), towards_x)
+
+
+def test_furniture_hides_the_cells_behind_it_and_no_others() -> None:
+    wall = np.array([[4.0, y, 0.0] for y in np.arange(-2.9, 3.0, 0.2)])
+    cells = Cells(wall, np.tile([-1.0, 0.0, 0.0], (len(wall), 1)))
+    # A post half a metre wide, 2 m away, hides a metre of a wall 4 m away.
+    post = box_points((2.0, 2.2), (-0.25, 0.25), (-1.0, 1.0)) + [0, 0, 0.0]
+    obstacles = find_obstacles(
+        post, Cells(np.array([[0.0, -5, -5], [5, 5, 5]]), np.eye(3)[:2]), walls=None, view=ScannerView()
+    )
+    seen = prospect(np.zeros(3), cells, obstacles, ScannerView()).seen
+    assert not seen[np.abs(wall[:, 1]) < 0.45].any()
+    assert seen[np.abs(wall[:, 1]) > 0.75].all()
+
+
+def test_furniture_close_to_the_scanner_has_no_holes_to_look_through() -> None:
+    wall = np.array([[5.0, y, z] for y in np.arange(-1, 1, 0.1) for z in np.arange(-0.9, 1, 0.1)])
+    cells = Cells(wall, np.tile([-1.0, 0.0, 0.0], (len(wall), 1)))
+    panel = box_points((0.7, 0.72), (-0.5, 0.5), (-0.5, 0.5))
+    obstacles = find_obstacles(panel, cells, walls=None, view=ScannerView())
+    assert len(obstacles.cubes) == 0  # outside the cells' bounding box nothing is kept
+    corners = Cells(np.concatenate([wall, [[0, -2, -2], [0, 2, 2]]]), np.concatenate([cells.normals, np.eye(3)[:2]]))
+    obstacles = find_obstacles(panel, corners, walls=None, view=ScannerView())
+    assert not prospect(np.zeros(3), cells, obstacles, ScannerView()).seen.any()
+
+
+def test_the_points_of_a_wall_do_not_hide_the_wall() -> None:
+    voxels = room_voxels()
+    cells = Cells(voxels.cells_in_world, voxels.normals)
+    noise = np.random.default_rng(0).normal(0, 0.004, (len(cells.centres), 3))
+    obstacles = find_obstacles(cells.centres + noise, cells, walls=ROOM, view=ScannerView())
+    bare = prospect(np.array([2.0, 2.0, 1.2]), cells, NO_OBSTACLES, ScannerView()).seen
+    np.testing.assert_array_equal(prospect(np.array([2.0, 2.0, 1.2]), cells, obstacles, ScannerView()).seen, bare)
+
+
+def test_a_corner_of_the_room_hides_the_other_arm() -> None:
+    # An L: the notch is x > 3, y > 2. From deep in one arm the far end of the other is out of sight.
+    walls = np.array([[0.0, 0], [6, 0], [6, 2], [3, 2], [3, 6], [0, 6]])
+    cells = Cells(np.array([[6.0, 1.0, 1.0], [1.5, 0.0, 1.0]]), np.array([[-1.0, 0, 0], [0.0, 1, 0]]))
+    seen = prospect(np.array([1.5, 5.0, 1.2]), cells, Obstacles(np.empty((0, 3)), walls), ScannerView()).seen
+    assert seen.tolist() == [False, True]
+
+
+SCREEN = ((2.9, 3.1), (2.0, 4.0), (0.0, 2.6))
+"""A partition of full height that stands across the room."""
+
+
+def screened_room() -> tuple[Voxels, NDArray[np.float64], OccupancyGrid]:
+    """Scanned from (1.2, 3.0): of the wall at x = 6, what lies between y = 1.5 and 4.7 is in the screen's shadow."""
+    # Shadow on x = 6: y = 3 -+ 1 * 4.8 / 1.7 = 3 -+ 2.8, taken a little narrower.
+    voxels = room_voxels().labelled(OCCLUDED, (5.99, 6.01), (0.5, 4.7), (0.0, 2.6))
+    grid = free_grid()
+    c = grid.centres()
+    screen = (abs(c[..., 0] - 3.0) < 0.1) & (c[..., 1] > 2.0) & (c[..., 1] < 4.0)
+    grid = replace(grid, cells=np.where(screen, np.uint8(Cell.OCCUPIED), grid.cells))
+    return voxels, box_points(*SCREEN), grid
+
+
+def exact_gain(voxels: Voxels, x: float, y: float) -> float:
+    """Area of the hidden strip that is seen from a place, by cutting each line of sight with the screen's outline."""
+    scanner = np.array([x, y, SCANNER])
+    strip = voxels.labels == OCCLUDED
+    ray = voxels.cells_in_world[strip] - scanner
+    distance = np.sqrt((ray**2).sum(axis=1))
+    enter = np.minimum((2.9 - x) / ray[:, 0], (3.1 - x) / ray[:, 0])
+    leave = np.maximum((2.9 - x) / ray[:, 0], (3.1 - x) / ray[:, 0])
+    sides = np.sort(np.stack([(2.0 - y) / ray[:, 1], (4.0 - y) / ray[:, 1]]), axis=0)
+    blocked = (np.maximum(enter, sides[0]) < np.minimum(leave, sides[1])) & (leave > 0)
+    elevation, cosine = np.degrees(np.arcsin(ray[:, 2] / distance)), ray[:, 0] / distance
+    in_view = (distance > 1.5) & (elevation < 60) & (elevation > -40) & (cosine > np.cos(np.radians(75)))
+    return float(0.04 * (in_view & ~blocked).sum())
+
+
+def test_each_candidate_is_credited_with_the_hidden_area_that_it_would_see() -> None:
+    voxels, points, grid = screened_room()
+    candidates = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid).candidates
+    exact = np.array([exact_gain(voxels, *c.position) for c in candidates])
+    predicted = np.array([c.gain for c in candidates])
+    # The strip has 4.2 x 2.6 m = 10.9 m2; a bin of 1.5 deg is 0.1 m wide on it, the screen's cubes are 0.1 m.
+    assert np.quantile(abs(predicted - exact), 0.9) < 0.6
+    assert exact.max() > 9.0 and exact.min() < 2.0  # they do differ
+
+
+def test_the_chosen_place_looks_at_what_the_screen_hid() -> None:
+    voxels, points, grid = screened_room()
+    chosen_plan = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid)
+    assert chosen_plan.stop_reason is None and chosen_plan.chosen is not None
+    chosen = chosen_plan.candidates[chosen_plan.chosen]
+    assert exact_gain(voxels, *chosen.position) > 8.0
+    assert chosen.position[0] < 4.5  # 1.5 m or more from the wall it is to scan
+    assert chosen.score == max(candidate.score for candidate in chosen_plan.candidates)
+    assert chosen_plan.path is not None
+    np.testing.assert_allclose(chosen_plan.path[0], [1.2, 3.0])
+    np.testing.assert_allclose(chosen_plan.path[-1], chosen.position)
+
+
+def test_the_score_falls_with_the_way_and_weighs_its_terms_as_documented() -> None:
+    voxels, points, grid = screened_room()
+    parameters = PlanningParameters(travel_cost=0.1, quality_weight=0.5, doorway_weight=2.0)
+    for c in plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid, parameters=parameters).candidates:
+        if c.reason is None:
+            expected = (c.gain + 0.5 * c.quality + 2.0 * c.doorway) * np.exp(-0.1 * c.travel)
+            assert c.score == pytest.approx(expected)
+
+
+def test_two_plans_from_the_same_facts_are_the_same() -> None:
+    voxels, points, grid = screened_room()
+    first = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid)
+    second = plan(voxels, scanners=[(1.2, 3.0)], points=points.copy(), grid=grid)
+    assert first.chosen == second.chosen
+    assert [c.score for c in first.candidates] == [c.score for c in second.candidates]
+    np.testing.assert_array_equal(first.path, second.path)
+
+
+def test_the_room_is_done_when_it_is_covered() -> None:
+    done = plan(room_voxels(), scanners=[(1.5, 2.5), (4.5, 2.5)])
+    assert done.stop_reason == "coverage"
+    assert done.coverage == 1.0
+    assert done.chosen is None and done.path is None
+    assert len(done.candidates) > 100  # with their scores, for the record
+
+
+def test_coverage_is_the_share_of_the_area_that_is_not_occluded() -> None:
+    voxels = room_voxels().labelled(OCCLUDED, (0.0, WIDTH), (0.0, DEPTH), (-0.1, 0.01))
+    # floor 30 m2 of 2 * 30 + 2 * (6 + 5) * 2.6 = 117.2 m2
+    assert plan(voxels, scanners=[(1.5, 2.5)]).coverage == pytest.approx(1 - 30 / 117.2)
+
+
+def test_no_gain_ends_a_room_whose_rest_cannot_be_seen() -> None:
+    # The floor behind the front of a chest that stands all along a wall.
+    hidden = room_voxels().labelled(OCCLUDED, (0.0, 6.0), (0.0, 0.6), (-0.01, 0.01))
+    bench = box_points((0.0, 6.0), (0.0, 1.0), (0.0, 0.6))
+    stopped = plan(hidden, scanners=[(1.5, 2.5), (4.5, 2.5)], points=bench, grid=free_grid(y=(1.0, DEPTH)))
+    assert stopped.coverage < 0.98
+    assert stopped.stop_reason == "no gain"
+    assert stopped.chosen is None
+
+
+def test_the_limit_of_scans_ends_a_room() -> None:
+    voxels, points, grid = screened_room()
+    limit = PlanningParameters(max_scans=2)
+    assert plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid, parameters=limit).stop_reason is None
+    places = [(4.5, 1.0), (1.2, 3.0)]
+    assert plan(voxels, scanners=places, points=points, grid=grid, parameters=limit).stop_reason == "scan limit"
+
+
+def test_a_robot_that_is_shut_in_has_nothing_to_reach() -> None:
+    voxels, points, _ = screened_room()
+    pen = free_grid(x=(0.5, 1.9), y=(2.3, 3.7))  # room to turn about its centre only
+    shut_in = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=pen)
+    assert shut_in.stop_reason in ("nothing reachable", "no gain")
+    wall = free_grid()
+    c = wall.centres()
+    closed = replace(wall, cells=np.where(abs(c[..., 0] - 2.2) < 0.1, np.uint8(Cell.OCCUPIED), wall.cells))
+    parted = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=closed)
+    beyond = [candidate for candidate in parted.candidates if candidate.position[0] > 2.5]
+    assert beyond
+    assert all(candidate.reason == "no way there" and candidate.score == 0 for candidate in beyond)
+
+
+def test_a_scan_must_see_enough_of_what_is_known() -> None:
+    voxels, points, grid = screened_room()
+    all_of_it = PlanningParameters(min_overlap=1.0)
+    stopped = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid, parameters=all_of_it)
+    assert any(c.reason == "overlap under 1" and c.score == 0 for c in stopped.candidates)
+    for c in stopped.candidates:
+        assert c.reason is not None or c.overlap == 1.0
+
+
+def survey_of(voxels: Voxels, scanners: list[tuple[float, float]]) -> Survey:
+    return Survey(
+        voxels,
+        np.empty((0, 3)),
+        np.array([(x, y, SCANNER) for x, y in scanners]),
+        floor_height=0.0,
+        room=ROOM,
+        parameters=SurveyParameters(),
+    )
+
+
+def test_what_a_scan_failed_to_see_is_not_expected_again_from_the_same_direction() -> None:
+    # The patch was in full view of the first scan and yet stayed occluded: something unknown stands before it.
+    voxels = room_voxels().labelled(OCCLUDED, (5.99, 6.01), (2.0, 3.0), (0.6, 2.0))
+    survey = survey_of(voxels, [(2.0, 2.5)])
+    assert survey.preview(np.array([2.2, 2.6, SCANNER])).gain == 0.0
+    # At (4, 4.6) the direction differs by some 46 deg: 5 x 7 cells of 0.04 m2
+    assert survey.preview(np.array([4.0, 4.6, SCANNER])).gain == pytest.approx(1.4)
+
+
+def test_walls_seen_only_obliquely_are_worth_a_better_view() -> None:
+    # From (1.5, 0.6) the wall y = 0 beyond x = 2.8 is seen at more than 65 deg (tan 65 = 2.14).
+    survey = survey_of(room_voxels(), [(1.5, 0.6)])
+    assert survey.preview(np.array([1.5, 0.6, SCANNER])).quality == 0.0
+    assert survey.preview(np.array([4.0, 2.5, SCANNER])).quality > 3.0
+
+
+def test_a_doorway_wants_to_be_seen_from_both_sides() -> None:
+    # A doorway of 0.8 x 2.0 m = 1.6 m2 in the wall y = 0, whose normal is +y: anticlockwise of it lies -x.
+    doorway = room_voxels().labelled(OPENING, (2.6, 3.4), (-0.01, 0.01), (0.0, 2.0))
+    left, ahead, right = (np.array([x, 2.2, SCANNER]) for x in (1.2, 3.0, 4.8))
+    survey = survey_of(doorway, [(1.2, 2.2)])
+    assert survey.preview(left).doorway == 0.0
+    assert survey.preview(ahead).doorway == 0.0  # within 20 deg of the normal is neither side
+    assert survey.preview(right).doorway == pytest.approx(1.6)
+    assert survey_of(doorway, [(1.2, 2.2), (4.8, 2.2)]).preview(right).doorway == 0.0
+    # A window is no doorway.
+    window = room_voxels().labelled(OPENING, (2.6, 3.4), (-0.01, 0.01), (0.9, 2.0))
+    assert survey_of(window, [(1.2, 2.2)]).preview(right).doorway == 0.0
+
+
+def test_a_doorway_seen_from_one_side_keeps_a_covered_room_going() -> None:
+    doorway = room_voxels().labelled(OPENING, (2.6, 3.4), (-0.01, 0.01), (0.0, 2.0))
+    more = plan(doorway, scanners=[(4.8, 3.5), (4.8, 2.2)])
+    assert more.coverage == 1.0
+    assert more.chosen is not None
+    assert more.candidates[more.chosen].position[0] < 2.6
+    assert worth(more.candidates[more.chosen], PlanningParameters(), covered=True) >= 0.5
+    assert plan(doorway, scanners=[(4.8, 2.2), (1.2, 2.2)]).stop_reason == "coverage"
+
+
+def test_a_turned_and_shifted_room_is_worth_the_same() -> None:
+    voxels = room_voxels().labelled(OCCLUDED, (5.99, 6.01), (2.0, 4.4), (0.0, 2.6))
+    yaw, shift = np.radians(30), np.array([100.0, -7.0, -3.0])
+    turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
+    turned = replace(voxels, cells_in_world=voxels.cells_in_world @ turn.T + shift, normals=voxels.normals @ turn.T)
+    here, there = np.array([[1.2, 0.8, SCANNER]]), np.array([3.5, 3.1, SCANNER])
+    before = Survey(voxels, np.empty((0, 3)), here, floor_height=0.0, room=ROOM, parameters=SurveyParameters())
+    after = Survey(
+        turned,
+        np.empty((0, 3)),
+        here @ turn.T + shift,
+        floor_height=-3.0,
+        room=ROOM @ turn[:2, :2].T + shift[:2],
+        parameters=SurveyParameters(),
+    )
+    expected, got = before.preview(there), after.preview(turn @ there + shift)
+    assert got.gain == pytest.approx(expected.gain, abs=0.05) and got.gain > 3.0
+    assert got.quality == pytest.approx(expected.quality, abs=0.1)
+    assert got.overlap == pytest.approx(expected.overlap, abs=0.01)
