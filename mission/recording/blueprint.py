@@ -83,7 +83,7 @@ def _wall(wall: WallTab) -> rrb.Container:
     root = entities.stages(wall.name)
     merged = f"+ {root}/merged/colour"
     views = rrb.Tabs(*(_view(root, number) for number in range(wall.views)), active_tab=wall.first_view)
-    cells = [
+    cells: list[rrb.Container | rrb.View] = [
         _image("Merged (4.2) and the doors found", root, merged, f"+ {root}/merged/doors/**"),
         _image("Depth from the wall plane, -15 to 15 cm", root, f"+ {root}/merged/depth"),
         rrb.Tabs(

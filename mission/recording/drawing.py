@@ -9,6 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from detector.room import VoxelLabel
+
 if TYPE_CHECKING:
     from mission.evaluation import DoorEvaluation
     from sim.doors import DoorTruth
@@ -31,6 +33,12 @@ PALETTE = (
     (150, 120, 220),
 )
 """Colours that tell doors apart."""
+
+LABEL_COLOURS = {
+    VoxelLabel.OCCUPIED: (70, 130, 230),
+    VoxelLabel.OCCLUDED: (120, 120, 120),
+    VoxelLabel.OPENING: (250, 200, 40),
+}
 
 JPEG_QUALITY = 90
 
@@ -100,6 +108,14 @@ def thin(
 def display_colours(colours: NDArray[np.uint8], coloured: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """(N, 3) colours with grey where no photograph saw the point."""
     return np.where(coloured[:, None], colours, np.array(UNCOLOURED, np.uint8))
+
+
+def label_colours(labels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """(N, 3) colours of voxel labels."""
+    table = np.zeros((256, 3), np.uint8)
+    for label, colour in LABEL_COLOURS.items():
+        table[label] = colour
+    return table[labels]
 
 
 def score_colours(scores: NDArray[np.floating]) -> NDArray[np.uint8]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import rerun as rr
 
+from mission.recording.drawing import LABEL_COLOURS
+
 WORLD = "/world"
 ROBOT = "/world/robot"
 ROBOT_BODY = "/world/robot/body"
@@ -40,7 +42,8 @@ SUMMARY = "/report/summary"
 CONFIGURATION = "/report/configuration"
 
 NOTHING = 0
-OCCUPIED, OCCLUDED, OPENING = 10, 11, 12
+VOXELS_FROM = 10
+"""Class of a voxel: this plus its label."""
 DATA, CENTROID, SEEN_THROUGH, BLOCKED = 20, 21, 22, 23
 REGION_OF_INTEREST, BRIGHT, HIGHLIGHT = 30, 31, 32
 COLOUR_EDGE, DEPTH_EDGE, BOTH_EDGES = 40, 41, 42
@@ -50,9 +53,7 @@ CLUSTERS = 100
 
 LEGEND = (
     (NOTHING, "none", (0, 0, 0, 0)),  # without it every overlay is tinted
-    (OCCUPIED, "occupied", (70, 130, 230, 255)),
-    (OCCLUDED, "occluded", (120, 120, 120, 255)),
-    (OPENING, "opening", (250, 200, 40, 255)),
+    *((VOXELS_FROM + label, label.name.lower(), (*colour, 255)) for label, colour in LABEL_COLOURS.items()),
     (DATA, "data", (235, 235, 235, 255)),
     (CENTROID, "opening voxel", (220, 60, 60, 255)),
     (SEEN_THROUGH, "a beam went through", (250, 200, 40, 255)),

@@ -51,14 +51,18 @@ def structure(event: Structured) -> dict[str, Any]:
 
 def voxels(event: Labelled) -> dict[str, Any]:
     """mission.Voxels."""
-    grids = [(f"wall {number}", labels) for number, labels in enumerate(event.voxels.walls, start=1)]
+    model = event.voxels
+    levels = [("floor", model.floor)] + ([("ceiling", model.ceiling)] if model.ceiling else [])
     return {
         "scan": event.scan_number,
-        "coverage": event.voxels.coverage,
-        "grids": [
-            {"surface": name, "rows": len(labels), "columns": labels.shape[1], "labels": labels.tobytes()}
-            for name, labels in grids
+        "coverage": model.coverage,
+        "size": model.size,
+        "grids": [_labels(f"wall {number}", labels) for number, labels in enumerate(model.walls, start=1)]
+        + [
+            _labels(name, grid.labels) | {"origin": _flat(grid.origin), "u": _flat(grid.u), "v": _flat(grid.v)}
+            for name, grid in levels
         ],
+        "clutter": _flat(model.clutter),
     }
 
 
@@ -143,6 +147,11 @@ def _flat(array: NDArray[np.floating]) -> list[float]:
     return np.asarray(array, float).ravel().tolist()
 
 
+def _labels(surface: str, labels: NDArray[np.uint8]) -> dict[str, Any]:
+    rows, columns = labels.shape
+    return {"surface": surface, "rows": rows, "columns": columns, "labels": labels.tobytes()}
+
+
 def _wall(rectangle: Outlined) -> dict[str, Any]:
     return {
         "origin": _flat(rectangle.origin),
@@ -159,6 +168,8 @@ def _candidate(candidate: ScanCandidate) -> dict[str, Any]:
         "y": float(candidate.position[1]),
         "heading": candidate.heading,
         "gain": candidate.gain,
+        "quality": candidate.quality,
+        "doorway": candidate.doorway,
         "overlap": candidate.overlap,
         "travel": candidate.travel,
         "score": candidate.score,

@@ -41,20 +41,27 @@ message Structure                         # floor, ceiling and walls
 
 message LabelGrid                         # labels of a surface's voxels
   string surface                          # "wall 1", "floor", "ceiling"
-  uint32 rows
+  uint32 rows                             # of a wall from its top, of floor and ceiling from their origin
   uint32 columns
-  bytes labels                            # row by row, 1 occupied, 2 occluded, 3 opening
+  bytes labels                            # row by row, 0 outside the room, 1 occupied, 2 occluded, 3 opening
+  repeated double origin                  # corner of the first cell [m]; empty for a wall, which has its own
+  repeated double u                       # unit vector along a row
+  repeated double v                       # unit vector along a column
 
 message Voxels                            # labels of all structure
   uint32 scan                             # last scan they rest on
   double coverage                         # share of the structure's area that is not occluded
+  double size                             # side of a voxel [m]
   repeated LabelGrid grids
+  repeated double clutter                 # x, y, z of the centre of each voxel that holds something else [m]
 
 message Candidate                         # a place to scan from
   double x                                # [m]
   double y                                # [m]
   double heading                          # [rad]
   double gain                             # occluded structure that would come into view [m2]
+  double quality                          # wall that would be seen less obliquely than ever [m2]
+  double doorway                          # openings that would be seen from a new side [m2]
   double overlap                          # share of the structure in view that is known
   double travel                           # way there [m]
   double score                            # the choice goes by it

@@ -38,7 +38,7 @@ from mission.events import (
 )
 from mission.recording import mcap_messages as messages
 from mission.recording import mcap_records as records
-from mission.recording.drawing import opening
+from mission.recording.drawing import label_colours, opening
 from mission.recording.mcap_messages import MAP
 from mission.recording.mcap_topics import open_channels
 from mission.recording.sentences import level, sentence
@@ -140,7 +140,10 @@ class McapSink:
 
     @_record.register
     def _(self, event: Labelled) -> None:
+        model = event.voxels
         self._log("/room/voxels", records.voxels(event))
+        centres, colours = model.cells_in_world.astype(np.float32), label_colours(model.labels)
+        self._log("/room/voxel_centres", messages.cloud(self._now, centres, colours, np.ones(len(centres), bool)))
 
     @_record.register
     def _(self, event: Planned) -> None:

@@ -7,13 +7,15 @@ from functools import singledispatchmethod
 import numpy as np
 import rerun as rr
 
-from mission.events import Event, Planned, Structured
+from mission.events import Event, Labelled, Planned, Structured
 from mission.recording import entities
 from mission.recording.drawing import score_colours
 from mission.recording.rerun_world import LIFT, PLAN_COLOUR
 
 GRID_COLOURS = np.array([(0, 0, 0, 0), (90, 200, 110, 70), (230, 60, 60, 160)], np.uint8)
 """Unknown, free and occupied cells."""
+
+CLUTTER_COLOUR = (190, 110, 60)
 
 
 class Plans:
@@ -31,6 +33,29 @@ class Plans:
     @draw.register
     def _(self, event: Structured) -> None:
         self._floor = event.structure.floor_height
+
+    @draw.register
+    def _(self, event: Labelled) -> None:
+        """Voxels as tiles on their surfaces, hidden until somebody asks for them."""
+        model = event.voxels
+        level = np.abs(model.normals[:, 2]) > 0.5
+        row = model.floor.u
+        yaw = np.where(level, np.arctan2(row[1], row[0]), np.arctan2(model.normals[:, 1], model.normals[:, 0]))
+        side, thickness = 0.45 * model.size, 0.01
+        tiles = np.where(level[:, None], (side, side, thickness), (thickness, side, side))
+        zeros = np.zeros_like(yaw)
+        self._rec.log(
+            entities.VOXELS,
+            rr.Boxes3D(
+                centers=model.cells_in_world,
+                half_sizes=tiles,
+                quaternions=np.stack([zeros, zeros, np.sin(yaw / 2), np.cos(yaw / 2)], axis=1),
+                class_ids=entities.VOXELS_FROM + model.labels.astype(np.uint16),
+                fill_mode="solid",
+            ),
+        )
+        half = np.full(3, 0.45 * model.size)
+        self._rec.log(entities.CLUTTER, rr.Boxes3D(centers=model.clutter, half_sizes=half, colors=CLUTTER_COLOUR))
 
     @draw.register
     def _(self, event: Planned) -> None:
@@ -51,6 +76,8 @@ class Plans:
             rr.AnyValues(
                 score=scores,
                 gain_m2=np.array([candidate.gain for candidate in candidates], float),
+                quality_m2=np.array([candidate.quality for candidate in candidates], float),
+                doorway_m2=np.array([candidate.doorway for candidate in candidates], float),
                 overlap=np.array([candidate.overlap for candidate in candidates], float),
                 travel_m=np.array([candidate.travel for candidate in candidates], float),
                 rejected=[candidate.reason or "" for candidate in candidates],

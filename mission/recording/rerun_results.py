@@ -100,7 +100,7 @@ def draw_axes(rec: rr.RecordingStream) -> None:
 def draw_scatter(rec: rr.RecordingStream, doors: Sequence[DoorEvaluation]) -> None:
     """Estimated over true opening angle, a point a door, with a bar of one standard deviation each way."""
     known = [(number, door) for number, door in enumerate(doors) if door.angle_error is not None]
-    points = [(np.degrees(door.true_angle), -np.degrees(door.door.opening_angle)) for _, door in known]
+    points = [(np.degrees(door.true_angle or 0.0), -np.degrees(door.door.opening_angle)) for _, door in known]
     stds = [float(np.degrees(np.nan_to_num(door.opening_angle_std))) for _, door in known]
     colours = [palette(number) for number, _ in known]
     rec.log(

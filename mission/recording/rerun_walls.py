@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -117,9 +118,9 @@ def _draw_search(rec: rr.RecordingStream, entity: str, result: WallResult) -> No
     rec.log(f"{entity}/edges/lines", _lines(classes.shape, search.horizontal_lines, search.vertical_lines))
     shown = shown_candidates(search.candidates)
     columns = ("dominant_colour_share", "dominant_depth_share", "wall_share")
-    hover = {name: np.array([getattr(candidate, name) for candidate in shown], float) for name in columns}
-    support = np.array([min(candidate.side_support) for candidate in shown], float)
-    rec.log(f"{entity}/candidates/boxes", rr.AnyValues(**hover, least_side_support=support))
+    hover: dict[str, Any] = {name: np.array([getattr(c, name) for c in shown], float) for name in columns}
+    hover["least_side_support"] = np.array([min(c.side_support) for c in shown], float)
+    rec.log(f"{entity}/candidates/boxes", rr.AnyValues(**hover))
     _draw_boxes(
         rec,
         f"{entity}/candidates",

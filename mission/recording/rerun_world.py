@@ -22,6 +22,7 @@ from mission.events import (
 from mission.recording import entities
 from mission.recording.drawing import display_colours, on_grid, outline, thin
 from mission.recording.entities import child
+from mission.rigid import inverted
 
 PATH_COLOUR = (255, 120, 40)
 PLAN_COLOUR = (80, 200, 255)
@@ -64,7 +65,7 @@ class World:
 
     @draw.register
     def _(self, event: MissionStarted) -> None:
-        self._scanner_from_base = np.linalg.inv(event.base_from_scanner)
+        self._scanner_from_base = inverted(event.base_from_scanner)
         self._rec.log(entities.WORLD, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         robot = event.robot
         self._rec.log(
@@ -166,7 +167,7 @@ class World:
             return
         points = []
         for scan in (scan for scan in event.laser_scans if scan.time == event.laser_scans[-1].time):
-            pose = event.world_from_base[min(np.searchsorted(event.times, scan.time), len(event.times) - 1)]
+            pose = event.world_from_base[min(int(np.searchsorted(event.times, scan.time)), len(event.times) - 1)]
             hit = np.isfinite(scan.ranges)
             ranges, angles = scan.ranges[hit], scan.angles[hit]
             in_laser = np.stack([ranges * np.cos(angles), ranges * np.sin(angles), 0 * ranges, 1 + 0 * ranges])
