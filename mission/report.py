@@ -107,8 +107,8 @@ class Report:
             "false_positives": len(doors) - len(found),
             "precision": _mean([o.precision for o in found]),
             "recall": _mean([o.recall for o in found]),
-            "e_abs": _mean([o.e_abs for o in found]),
-            "e_rel": _mean([o.e_rel for o in found]),
+            "e_abs": _mean([o.absolute_error for o in found]),
+            "e_rel": _mean([o.relative_error for o in found]),
             "angle_mae_deg": _mean(errors),
             "angle_max_deg": _rounded(max(errors)) if errors else None,
             "coverage": _mean([room.coverage for room in self.rooms.values()]),
@@ -189,8 +189,8 @@ def _truth(evaluation: DoorEvaluation) -> dict[str, Any] | None:
         "angle_error_deg": _degrees(evaluation.angle_error),
         "precision": _rounded(evaluation.overlap.precision),
         "recall": _rounded(evaluation.overlap.recall),
-        "e_abs": _rounded(evaluation.overlap.e_abs),
-        "e_rel": _rounded(evaluation.overlap.e_rel),
+        "e_abs": _rounded(evaluation.overlap.absolute_error),
+        "e_rel": _rounded(evaluation.overlap.relative_error),
     }
 
 
