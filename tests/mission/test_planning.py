@@ -236,6 +236,16 @@ def test_the_room_is_done_when_it_is_covered() -> None:
     assert len(done.candidates) > 100  # with their scores, for the record
 
 
+def test_a_small_rest_does_not_keep_a_covered_room_going() -> None:
+    # 1 m2 of 117.2 m2 is hidden, 99.1 % covered; a third scan would see it.
+    voxels = room_voxels().labelled(OCCLUDED, (2.0, 3.0), (2.0, 3.0), (-0.01, 0.01))
+    done = plan(voxels, scanners=[(2.0, 2.4), (3.0, 2.6)])
+    assert max(candidate.gain for candidate in done.candidates) > 0.8
+    assert done.stop_reason == "coverage"
+    strict = PlanningParameters(target_coverage=0.995)
+    assert plan(voxels, scanners=[(2.0, 2.4), (3.0, 2.6)], parameters=strict).stop_reason is None
+
+
 def test_coverage_is_the_share_of_the_area_that_is_not_occluded() -> None:
     voxels = room_voxels().labelled(OCCLUDED, (0.0, WIDTH), (0.0, DEPTH), (-0.1, 0.01))
     # floor 30 m2 of 2 * 30 + 2 * (6 + 5) * 2.6 = 117.2 m2
