@@ -74,7 +74,7 @@ def scan(
     boxes: list[Box],
     world_from_scanner: NDArray[np.float64],
     *,
-    step_deg: float = 0.4,
+    step_deg: float = 0.5,
     noise: float = 0.0,
     seed: int = 0,
     minimum_range: float = 1.5,
