@@ -63,11 +63,10 @@ def points(values: NDArray[np.floating]) -> list[Point3]:
     return [Point3(x=x, y=y, z=z) for x, y, z in np.asarray(values, float).tolist()]
 
 
-def quaternion(rotation: NDArray[np.float64]) -> Quaternion:
-    """A rotation matrix (3, 3) as unit quaternion with w >= 0.
+def xyzw(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A rotation matrix (3, 3) as unit quaternion (x, y, z, w) with w >= 0.
 
-    Each component's magnitude follows from the diagonal; the signs from the off-diagonal (Bar-Itzhack's matrix K, whose
-    largest row is the quaternion up to scale, avoids dividing by what is nearly zero).
+    4 q q' is made of sums and differences of the matrix; its longest row is q up to scale, free of small divisors.
     """
     m = rotation
     k = np.array(
@@ -79,7 +78,12 @@ def quaternion(rotation: NDArray[np.float64]) -> Quaternion:
         ]
     )
     row = k[np.argmax(np.diag(k))]
-    x, y, z, w = (row / np.sqrt(np.sum(row**2)) * (1.0 if row[3] >= 0 else -1.0)).tolist()
+    return row / np.sqrt(np.sum(row**2)) * (1.0 if row[3] >= 0 else -1.0)
+
+
+def quaternion(rotation: NDArray[np.float64]) -> Quaternion:
+    """A rotation matrix (3, 3) as a message."""
+    x, y, z, w = xyzw(rotation).tolist()
     return Quaternion(x=x, y=y, z=z, w=w)
 
 
