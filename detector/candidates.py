@@ -21,6 +21,14 @@ STRIP = (0.01, 0.06)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
 SURROUND_DEPTH = 0.045
 """The wall and its frames lie within this of the wall's plane [m]."""
+FAINT_COLOUR = 0.008
+"""Least difference of colour on all sides that sets a surface apart, of 1: two grey values."""
+FAINT_DEPTH = 0.003
+"""Least difference of depth on all sides that sets a surface apart [m]."""
+OVERSHOOT = 0.15
+"""How far beyond its corners the outline of a door must have ended [m]."""
+SAMPLED_PX = 4
+"""Every so many pixels are enough for the shares of a rectangle."""
 SAME_COLOUR = 0.02
 """Colours closer than this in every channel are the same, of 1."""
 SAME_DEPTH = 0.006
@@ -133,7 +141,7 @@ def surroundings(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
     strip is hidden or beyond the image.
     """
     depth = scene.merged.depth
-    plane = scene.sums(np.abs(np.nan_to_num(depth, nan=np.inf)) < SURROUND_DEPTH)
+    plane = scene.sums((np.abs(np.nan_to_num(depth, nan=np.inf)) < SURROUND_DEPTH) & ~scene.edges.sloped)
     visible = scene.sums((scene.seen == Visibility.DATA) | (scene.seen == Visibility.THROUGH))
     result = np.ones((len(boxes), 3))
     for i, strip in enumerate(strips(boxes, scene, outside=True)):
@@ -160,24 +168,65 @@ def strips(boxes: Boxes, scene: Scene, *, outside: bool) -> list[NDArray[np.int6
     return [np.clip(np.rint(r), 0, limit).astype(np.int64) for r in result]
 
 
-def is_bounded(box: Boxes, scene: Scene) -> bool:
-    """Whether each side of one rectangle divides things: another colour, another depth, or wall outside.
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Differences across the left, top and right sides of one rectangle, inside minus outside; NaN where hidden."""
 
-    The groove of a panel or plank has the same leaf on both sides.
-    """
+    colour: NDArray[np.float64]
+    """(3, 3) side x channel, of 1."""
+    depth: NDArray[np.float64]
+    """(3,) [m]."""
+    wall_outside: NDArray[np.float64]
+    """(3,) share of the strip outside that is wall area."""
+
+    def are_real(self) -> bool:
+        """Whether no side has the same surface on both sides, as the groove of a panel or plank has.
+
+        Wall outside will do: a door may have the wall's colour.
+        """
+        same = (np.abs(self.colour).max(axis=1) < SAME_COLOUR) & (np.abs(self.depth) < SAME_DEPTH)
+        return not (same & (self.wall_outside < 0.4)).any()
+
+    def agree(self) -> bool:
+        """Whether the inside differs from the outside in one way on all visible sides: a surface of its own."""
+        values = np.column_stack([self.colour / FAINT_COLOUR, self.depth / FAINT_DEPTH])
+        values = values[~np.isnan(values).any(axis=1)]
+        return len(values) >= 2 and bool(((values >= 1).all(axis=0) | (values <= -1).all(axis=0)).any())
+
+
+def steps(box: Boxes, scene: Scene) -> Steps:
+    """What changes across the sides of one rectangle, by medians over strips."""
     inner, outer = strips(box, scene, outside=False), strips(box, scene, outside=True)
+    colour, depth, wall = np.full((3, 3), np.nan), np.full(3, np.nan), np.ones(3)
     for i in range(3):
-        cut = [np.s_[b[0, 0] : b[0, 2], b[0, 1] : b[0, 3]] for b in (inner[i], outer[i])]
+        cut = [np.s_[b[0, 0] : b[0, 2] : 2, b[0, 1] : b[0, 3] : 2] for b in (inner[i], outer[i])]
         known = [scene.merged.coloured[c] & np.isfinite(scene.merged.depth[c]) for c in cut]
         if any(k.sum() < 0.1 * max(k.size, 1) for k in known):
             continue
-        if scene.wall[cut[1]][known[1]].mean() > 0.4:
-            continue
         colours = [np.median(scene.merged.colour[c][k], axis=0) / 255 for c, k in zip(cut, known, strict=True)]
         depths = [float(np.median(scene.merged.depth[c][k])) for c, k in zip(cut, known, strict=True)]
-        if np.abs(colours[0] - colours[1]).max() < SAME_COLOUR and abs(depths[0] - depths[1]) < SAME_DEPTH:
-            return False
-    return True
+        colour[i], depth[i] = colours[0] - colours[1], depths[0] - depths[1]
+        wall[i] = scene.wall[cut[1]][known[1]].mean()
+    return Steps(colour, depth, wall)
+
+
+def overshoot(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
+    """(N,) largest share of edges where the left, top and right sides are drawn out beyond the upper corners.
+
+    The lines of tiles and planks go on there; the outline of a door ends.
+    """
+    reach = round(OVERSHOOT / scene.merged.pixel_size)
+    top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
+    upright = scene.sums(cv2.dilate(scene.edges.upright.astype(np.uint8), np.ones((1, 3), np.uint8)) > 0)
+    level = scene.sums(cv2.dilate(scene.edges.level.astype(np.uint8), np.ones((3, 1), np.uint8)) > 0)
+    clear = 4  # the corners themselves are round
+    beyond = (
+        (upright, [top - clear - reach, left, top - clear, left + 1]),
+        (upright, [top - clear - reach, right, top - clear, right + 1]),
+        (level, [top, left - clear - reach, top + 1, left - clear]),
+        (level, [top, right + clear, top + 1, right + clear + reach]),
+    )
+    return np.max([box_sums(sums, np.stack(box, axis=1)) / reach for sums, box in beyond], axis=0)
 
 
 @dataclass(frozen=True)
@@ -189,14 +238,14 @@ class Dominance:
     depth_share: float
     """Visible share that lies on the dominant plane, or is looked through if that is more."""
     depth: float
-    """Depth of the dominant plane at the middle of the rectangle [m]; NaN without data."""
+    """Depth of the dominant plane at that side of the rectangle where it is less [m]; NaN without data."""
 
 
 def dominance(box: Boxes, scene: Scene) -> Dominance:
     """Dominant colour and depth of one rectangle; the depth may slope along u, as that of a semi-open leaf does."""
     cut = np.s_[
-        int(np.ceil(box.top[0] + 0.5)) : scene.lowest_row,
-        int(np.ceil(box.left[0] + 0.5)) : int(np.floor(box.right[0] + 0.5)),
+        int(np.ceil(box.top[0] + 0.5)) : scene.lowest_row : SAMPLED_PX,
+        int(np.ceil(box.left[0] + 0.5)) : int(np.floor(box.right[0] + 0.5)) : SAMPLED_PX,
     ]
     seen, depth = scene.seen[cut], scene.merged.depth[cut]
     data = seen == Visibility.DATA
@@ -204,36 +253,32 @@ def dominance(box: Boxes, scene: Scene) -> Dominance:
     total = max(data.sum() + through, 1.0)
     if data.sum() < 10:
         return Dominance(through / total, through / total, float("nan"))
-    offset, slope = _plane(depth, data)
-    middle = (np.arange(depth.shape[1]) - (depth.shape[1] - 1) / 2) * slope + offset
-    on_plane = data & (np.abs(depth - middle[None, :]) < 0.02)
+    plane = _plane(depth, data)
+    on_plane = data & (np.abs(depth - plane[None, :]) < 0.02)
     coloured = data & scene.merged.coloured[cut]
     colour_share = float(data.sum())
     if coloured.any():
         colour_share *= _dominant_colour(scene.merged.colour[cut][coloured])
-    return Dominance(max(through, colour_share) / total, max(through, float(on_plane.sum())) / total, float(offset))
+    depth_share = max(through, float(on_plane.sum())) / total
+    return Dominance(max(through, colour_share) / total, depth_share, float(min(plane[0], plane[-1])))
 
 
-def _plane(depth: NDArray, data: Mask) -> tuple[float, float]:
-    """Depth at the middle column and slope per column of the dominant plane, from the medians of the columns."""
+def _plane(depth: NDArray, data: Mask) -> NDArray[np.float64]:
+    """(W,) depth of the dominant plane in each column: a robust line through the medians of the columns."""
     columns = np.flatnonzero(data.sum(axis=0) >= 0.2 * data.shape[0])
     if len(columns) < 5:
-        return float(np.median(depth[data])), 0.0
-    columns = columns[:: max(1, len(columns) // 60)]
-    medians = np.nanmedian(np.where(data[:, columns], depth[:, columns], np.nan), axis=0)
+        return np.full(depth.shape[1], np.median(depth[data]), np.float64)
+    medians = np.nanmedian(depth[:, columns], axis=0)
     i, j = np.triu_indices(len(columns), max(1, len(columns) // 6))
-    slope = float(np.median((medians[j] - medians[i]) / (columns[j] - columns[i])))
-    offset = float(np.median(medians - slope * (columns - (depth.shape[1] - 1) / 2)))
-    return offset, slope
+    slope = np.median((medians[j] - medians[i]) / (columns[j] - columns[i]))
+    return np.arange(depth.shape[1]) * slope + np.median(medians - slope * columns)
 
 
 def _dominant_colour(colours: Image) -> float:
-    """Share of the pixels in the most frequent colour: the fullest bin of a coarse histogram and those like its mean."""
-    values = colours[:: 1 + len(colours) // 20_000].astype(np.float32) / 255
-    bins = (values * 12).astype(np.int64)
-    codes, counts = np.unique(bins[:, 0] * 169 + bins[:, 1] * 13 + bins[:, 2], return_counts=True)
-    fullest = codes[counts.argmax()]
-    centre = values[(bins[:, 0] * 169 + bins[:, 1] * 13 + bins[:, 2]) == fullest].mean(axis=0)
+    """Share of the colours that are like the most frequent one."""
+    values = colours.astype(np.float32) / 255
+    bins = (values * 12).astype(np.int64) @ np.array([169, 13, 1])
+    centre = values[bins == np.bincount(bins).argmax()].mean(axis=0)
     for _ in range(3):
         like = np.abs(values - centre).max(axis=1) < 0.12
         centre = values[like].mean(axis=0)

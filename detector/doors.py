@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from detector.candidates import (
     FOOT_SUPPORT,
     Boxes,
+    Dominance,
     Scene,
     dominance,
     door_boxes,
     inner_shares,
-    is_bounded,
+    overshoot,
     side_support,
+    steps,
     surroundings,
 )
 from detector.edges import find_edges
@@ -26,7 +29,10 @@ ALIKE = 0.04
 """Rectangles whose sides all lie this close are readings of the same door [m]."""
 OPEN_SHARE = 0.15
 """A rectangle that is looked through over more than this share is open."""
-SHOWN = 200
+CLEAR_SUPPORT = 0.8
+"""Support of every side and foot of an outline that cuts a rectangle out of a wall of its own colour."""
+MAX_OVERSHOOT = 0.5
+SHOWN = 60
 """Rejected candidates that are kept for the record."""
 JUDGED = 80
 """Candidates that reach the costly conditions at most."""
@@ -69,6 +75,7 @@ def judge(
     support, feet = side_support(boxes, scene, parameters)
     wall, visible, through = inner_shares(boxes, scene)
     around = surroundings(boxes, scene)
+    wall = np.where(_stand_alone(boxes, support, feet, scene), 0.0, wall)
     reasons = np.full(len(boxes), None, object)
     checks = (
         ("door frame occlusion", support.min(axis=1) < parameters.alpha2),
@@ -87,7 +94,7 @@ def judge(
     for i in [*survivors, *rejected]:
         box = boxes[np.array([i])]
         shares = dominance(box, scene)
-        reason = reasons[i] or _costly_reason(box, scene, float(through[i]), parameters)
+        reason = reasons[i] or _costly_reason(box, shares, scene, float(through[i]), parameters)
         candidates.append(
             Candidate(
                 rectangle=_rectangle(box, scene.merged.pixel_size, height, floor),
@@ -101,14 +108,30 @@ def judge(
     return _smallest(candidates)
 
 
-def _costly_reason(box: Boxes, scene: Scene, through: float, parameters: DetectorParameters) -> str | None:
+def _stand_alone(boxes: Boxes, support: NDArray, feet: NDArray, scene: Scene) -> NDArray[np.bool_]:
+    """(N,) rectangles whose outline cuts them out of the wall, even if their colour is the wall's (ours).
+
+    The wall area of section 6.1 takes in every door of nearly the wall's colour and depth. Such a door still has an
+    unbroken outline that ends at its corners, and the same small step on all its sides.
+    """
+    closed = (support.min(axis=1) > CLEAR_SUPPORT) & (feet.min(axis=1) > CLEAR_SUPPORT)
+    for i in np.flatnonzero(closed)[np.argsort(-support[closed].sum(axis=1), kind="stable")][JUDGED:]:
+        closed[i] = False
+    closed[closed] = overshoot(boxes[closed], scene) < MAX_OVERSHOOT
+    for i in np.flatnonzero(closed):
+        closed[i] = steps(boxes[np.array([i])], scene).agree()
+    return closed
+
+
+def _costly_reason(
+    box: Boxes, shares: Dominance, scene: Scene, through: float, parameters: DetectorParameters
+) -> str | None:
     """First failed condition of those that need the pixels themselves."""
-    shares = dominance(box, scene)
     if min(shares.colour_share, shares.depth_share) < parameters.alpha1:
         return "colour and depth consistency"
     if through < OPEN_SHARE and not shares.depth < parameters.max_protrusion:
         return "protrusion"
-    if not is_bounded(box, scene):
+    if not steps(box, scene).are_real():
         return "same on both sides"
     return None
 

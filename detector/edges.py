@@ -21,6 +21,8 @@ GRADIENT_STEPS = 1000
 """Grey values per unit of gradient for Otsu's histogram; stronger gradients than 0.255 count as that."""
 CREASE_PX = 6
 """Half length over which a change of slope is measured."""
+FLAT = 0.1
+"""Slope along u up to which a surface counts as parallel to the wall: 6 deg."""
 CREASE = 0.005
 """Deviation from a straight depth profile that is a crease [m]."""
 
@@ -37,6 +39,8 @@ class Edges:
     """Those of J'_CD that can lie on a vertical side."""
     level: Mask
     """Those that can lie on a horizontal side."""
+    sloped: Mask
+    """Where the surface is not parallel to the wall, as the face of a half-open leaf."""
 
 
 def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) -> Edges:
@@ -49,10 +53,10 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
     gradient = di_zenzo(dx, dy)
     colour = (gradient > colour_threshold(gradient, merged.coloured, parameters)) & merged.coloured
     across = (dx**2).sum(axis=2) >= (dy**2).sum(axis=2)
-    depth, depth_across = depth_edges(merged.depth, seen, parameters)
-    return Edges(
-        colour, depth, (colour & across) | (depth & depth_across), (colour & ~across) | (depth & ~depth_across)
-    )
+    relief = depth_edges(merged.depth, seen, merged.pixel_size, parameters)
+    upright = (colour & across) | (relief.edges & relief.across)
+    level = (colour & ~across) | (relief.edges & ~relief.across)
+    return Edges(colour, relief.edges, upright, level, relief.sloped)
 
 
 def colour_derivatives(merged: Orthoimage) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -91,21 +95,32 @@ def colour_threshold(gradient: NDArray[np.float32], coloured: Mask, parameters: 
     return float(max(min(otsu, parameters.colour_edge_cap), NOISE_FACTOR * float(np.median(values))))
 
 
-def depth_edges(depth: NDArray[np.float32], seen: Image, parameters: DetectorParameters) -> tuple[Mask, Mask]:
+@dataclass(frozen=True, eq=False)
+class Relief:
+    """What the depth shows, each (H, W)."""
+
+    edges: Mask
+    """J'_D."""
+    across: Mask
+    """True where the depth changes along the columns rather than down the rows."""
+    sloped: Mask
+    """True where it changes steadily along the columns."""
+
+
+def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, parameters: DetectorParameters) -> Relief:
     """Canny's edges of the depth, with the creases where a leaf leaves the wall's plane.
 
     Holes count as deep as the slab reaches; shadows and gaps take the depth of the nearest point, so that they have no
     edge of their own.
-
-    Returns:
-        (H, W) the edges, and (H, W) True where the depth changes along the columns rather than down the rows.
     """
     data, through = np.isfinite(depth), seen == Visibility.THROUGH
     known = np.where(through, np.float32(-parameters.slab_behind), depth)
     filled = nearest(known, data | through)
     if not (data | through).any():
-        return np.zeros_like(data), np.zeros_like(data)
+        return Relief(*(np.zeros_like(data) for _ in range(3)))
     dx, dy = _derivatives(filled)
+    slope = _local_slope(dx)
+    dx = dx - slope  # the face of a half-open leaf slopes, and has no edges
     scale = 10_000.0  # derivatives in units of 0.1 mm, as 16-bit integers for Canny
     high = parameters.depth_edge / 2 * scale  # a central difference sees half a step
     found = cv2.Canny(
@@ -118,7 +133,16 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, parameters: DetectorPar
     creases_x, creases_y = (_creases(filled, axis, steps) for axis in (1, 0))
     near_data = cv2.dilate(data.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
     across = np.where(steps, np.abs(dx) >= np.abs(dy), creases_x)
-    return (steps | creases_x | creases_y) & near_data, across
+    return Relief((steps | creases_x | creases_y) & near_data, across, np.abs(slope) > FLAT * pixel_size)
+
+
+def _local_slope(dx: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(H, W) steady part of the derivative along the columns: its running median, which no step moves."""
+    from scipy.ndimage import median_filter
+
+    every = ALONG_PX // 2  # the derivative is already smooth down the rows
+    coarse = median_filter(dx[::every], (1, 2 * CREASE_PX + 1), mode="nearest")
+    return np.repeat(coarse, every, axis=0)[: len(dx)]
 
 
 def _creases(depth: NDArray[np.float32], axis: int, steps: Mask) -> Mask:
@@ -130,6 +154,6 @@ def _creases(depth: NDArray[np.float32], axis: int, steps: Mask) -> Mask:
     shape = kernel if axis == 1 else kernel.T
     bend = np.abs(cv2.filter2D(cv2.blur(depth, size), cv2.CV_32F, shape, borderType=cv2.BORDER_REPLICATE))
     ridge = cv2.dilate(bend, np.ones((1, 5) if axis == 1 else (5, 1), np.uint8))
-    reach = 2 * CREASE_PX + 1
-    near_step = cv2.dilate(steps.astype(np.uint8), np.ones((reach, reach), np.uint8)) > 0
+    reach = (3 * ALONG_PX, 2 * CREASE_PX + 3)
+    near_step = cv2.dilate(steps.astype(np.uint8), np.ones(reach if axis == 1 else reach[::-1], np.uint8)) > 0
     return (bend > CREASE) & (bend == ridge) & ~near_step

@@ -7,15 +7,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.illumination import incidence
+from detector.orthoimage import nearest
 from detector.parameters import DetectorParameters
 from detector.result import Highlights, Image, Mask, Orthoimage
 
 DIRECTIONS = np.array([(-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1)], float)
 """(8, 2) row and column steps N, NE, E, SE, S, SW, W, NW; opposite ones are four apart."""
+SMOOTHING_PX = 3.0
+"""Standard deviation of the filter before the intensity is quantised: noise would break every segment up."""
+MIN_FEET = 6
+"""Profiles, of eight, that must end at a foot; more than two cut off by an edge or a hole is no bell."""
 DISCONTINUITY = 0.10
 """Drop of the intensity from one pixel to the next that ends a highlight."""
-FLAT_RUN = 4
+FLAT_RUN = 6
 """Pixels without descent after which the slope counts as zero."""
+FLAT = 0.006
+"""Descent over that run that counts as none, of 1."""
 MAX_CANDIDATES = 30
 
 
@@ -30,7 +37,8 @@ def find_highlights(
     """
     angles, _ = incidence(image, camera, height)
     region = angles < parameters.highlight_roi_angle
-    intensity = cv2.GaussianBlur(image.colour.astype(np.float32).mean(axis=2) / 255, (0, 0), 2.0)
+    filled = nearest(image.colour, image.coloured).astype(np.float32).mean(axis=2) / 255
+    intensity = cv2.GaussianBlur(filled, (0, 0), SMOOTHING_PX)
     levels = np.minimum(intensity * parameters.grey_levels, parameters.grey_levels - 1).astype(np.uint8)
     empty = Highlights(region, levels, np.zeros(region.shape, np.int32), np.zeros(region.shape, bool), (), image.colour)
     if not parameters.correct_highlights or not (region & image.coloured).any():
@@ -84,8 +92,13 @@ def _contour(
     """(8, 2) end points of the profiles through a region's centroid, or None if none of the four fits a Gaussian."""
     longest = parameters.highlight_max_radius / parameters.pixel_size
     profiles = [_half_profile(intensity, known, centre, step, longest) for step in DIRECTIONS]
-    if sum(len(p) * np.hypot(*d) < longest for p, d in zip(profiles, DIRECTIONS, strict=True)) < 6:
-        return None  # the fall-off of the flash, not a highlight
+    contrast = parameters.highlight_min_contrast
+    feet = sum(
+        len(p) > 1 and len(p) * np.hypot(*d) < longest and p[0] - p[-1] > contrast / 2
+        for p, d in zip(profiles, DIRECTIONS, strict=True)
+    )
+    if feet < MIN_FEET:  # the fall-off of the flash, or a bright surface: not a highlight
+        return None
     full = [np.concatenate([profiles[i + 4][:0:-1], profiles[i]]) for i in range(4)]
     if not any(_is_gaussian(profile, parameters) for profile in full):
         return None
@@ -93,26 +106,27 @@ def _contour(
 
 
 def _half_profile(intensity: NDArray, known: Mask, centre: NDArray, step: NDArray, longest: float) -> NDArray:
-    """Intensity from the centroid outwards, until the slope gets to zero or breaks."""
-    count = max(2, int(longest / np.hypot(*step)))
-    path = np.rint(centre + np.arange(count)[:, None] * step).astype(int)
+    """Intensity from the centroid outwards, until the slope gets to zero or breaks, or the data end."""
+    path = np.rint(centre + np.arange(max(2, int(longest / np.hypot(*step))))[:, None] * step).astype(int)
     inside = ((path >= 0) & (path < known.shape)).all(axis=1)
-    path = path[: count if inside.all() else int(np.argmin(inside))]
+    path = path[: _first(~inside)]
+    path = path[: _first(~known[path[:, 0], path[:, 1]])]
     values = intensity[path[:, 0], path[:, 1]]
-    seen = known[path[:, 0], path[:, 1]]
-    values = values[: len(values) if seen.all() else int(np.argmin(seen))]
-    drop = np.diff(values)
-    broken = np.flatnonzero(np.abs(drop) > DISCONTINUITY)
-    lowest = np.minimum.accumulate(values) if len(values) else values
-    flat = np.flatnonzero(lowest[FLAT_RUN:] > lowest[:-FLAT_RUN] - 0.002)
-    away = values[0] - lowest[: len(flat) and None] if len(values) else values
-    flat = flat[away[flat] > 0.02] if len(flat) else flat  # the clipped top is flat, too
-    end = min([len(values), *(broken[:1] + 1), *(flat[:1] + 1)])
-    return values[: max(end, 1)]
+    if len(values) <= FLAT_RUN:
+        return values[:1]
+    broken = _first(np.abs(np.diff(values)) > DISCONTINUITY)
+    descending = values[:-FLAT_RUN] - values[FLAT_RUN:] > FLAT
+    below_top = values[0] - values[:-FLAT_RUN] > 2 * FLAT  # the clipped top is flat, too
+    return values[: min(broken, _first(below_top & ~descending)) + 1]
+
+
+def _first(mask: NDArray[np.bool_]) -> int:
+    """Index of the first True, or the length."""
+    return int(mask.argmax()) if mask.any() else len(mask)
 
 
 def _is_gaussian(profile: NDArray, parameters: DetectorParameters) -> bool:
-    """Whether a profile is a Gaussian over a level foot, clipped at the top if the photograph was."""
+    """Whether a profile is a Gaussian over a level foot, cut at the top if the photograph was overexposed."""
     from scipy.optimize import curve_fit
 
     if len(profile) < 9 or np.ptp(profile) < parameters.highlight_min_contrast:

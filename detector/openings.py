@@ -110,9 +110,10 @@ def trinary_image(merged: Orthoimage, wall: Wall) -> Image:
     """Trinary image I: data, no data, and the centre pixel of each Opening voxel.
 
     The text of section 5 takes "data" from Occupied voxels, figure 7 from 3D points; the points outline the opening
-    to a pixel, so they decide here.
+    to a pixel, so they decide here, as far as they lie within the wall's layer of voxels.
     """
-    trinary = np.where(np.isfinite(merged.depth), Trinary.DATA, Trinary.NO_DATA).astype(np.uint8)
+    in_voxel = np.abs(merged.depth) <= wall.voxel_size / 2  # False for NaN
+    trinary = np.where(in_voxel, Trinary.DATA, Trinary.NO_DATA).astype(np.uint8)
     rows, columns = np.nonzero(wall.voxel_labels == VoxelLabel.OPENING)
     per_voxel = wall.voxel_size / merged.pixel_size
     rows, columns = ((rows + 0.5) * per_voxel).astype(int), ((columns + 0.5) * per_voxel).astype(int)

@@ -14,7 +14,7 @@ from detector.room import DetectorError, View, Wall
 
 LEAF_REACH = 1.7
 """How far from the wall an open leaf can stand [m]."""
-THINNED_TO = 1_200_000
+THINNED_TO = 600_000
 """Points of a view that are enough for shadows and leaves."""
 MAX_PASSED = 3_000_000
 """Points behind the wall that are enough to outline its holes."""

@@ -30,7 +30,7 @@ def lateral_histogram(edges: Mask, axis: int, window_px: int) -> NDArray[np.floa
     return shares.max(axis=axis)
 
 
-def find_lines(edges: Mask, axis: int, window_px: int, share: float, limit: int = 80) -> NDArray[np.float64]:
+def find_lines(edges: Mask, axis: int, window_px: int, share: float, limit: int = 40) -> NDArray[np.float64]:
     """Positions of the vertical (axis 0) or horizontal (axis 1) lines, as peaks of the lateral histogram.
 
     Args:
