@@ -30,13 +30,12 @@ APERTURES = 2.8, 22.0
 FLASH = -0.09, 0.0
 """Flash right of and above the lens [m]: held upright, the camera has its flash at the left side."""
 BRIGHT_SHARE, BRIGHT_LEVEL = 0.98, 0.9
-"""The turn is exposed so that this share of what it shows is matt light below this part of full scale."""
+"""The turn is exposed so that this share of what it shows stays below this part of full scale in every channel."""
 AMBIENT_DISTANCE = 3.0
 """Distance of the flash that ambient light is measured against [m]."""
 
 _NEAREST = 0.3
 """Nearest surface that the flash's view covers up to the edge of the picture [m]."""
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 _LEVELS = 2**12
 """Of the analogue-digital converter."""
 
@@ -203,7 +202,7 @@ def _gain(shots: list[_Exposure]) -> float:
     Colours of several photographs are merged, so all shots of a turn share it. The light of the gloss is left out: it
     may clip, as in life.
     """
-    samples = [(shot.albedo[::8, ::8] @ _LUMINANCE) * shot.light.diffuse[::8, ::8] for shot in shots]
+    samples = [shot.albedo[::8, ::8].max(axis=2) * shot.light.diffuse[::8, ::8] for shot in shots]
     brightness = np.concatenate([sample[sample > 0] for sample in samples])
     lowest, highest = ((GUIDE_NUMBER / aperture) ** 2 for aperture in reversed(APERTURES))
     if not len(brightness):

@@ -18,6 +18,8 @@ WEDGES = 6
 
 _MARGIN_PX = 3
 """Pixels round a picture that no beam needs, but its neighbours do."""
+_STEEPEST = 0.02
+"""Largest relative slope a pixel that a surface may have, 87 deg of incidence; beyond that the pixel stands alone."""
 _DENSITY = 512, 1024
 """Fewest and most pixels per unit of tangent, which is per radian in the middle of a picture."""
 
@@ -90,12 +92,26 @@ class _Wedge:
         return View(pose, -self.half_width, self.half_width, self.bottom, self.top, self.width, self.height)
 
     def sample(self, raw: NDArray[np.float32]) -> NDArray[np.float32]:
-        """(E, columns) raw depth at the beams: bilinear on a surface, the nearest pixel's where two surfaces meet."""
+        """(E, columns) raw depth at the beams: bilinear on a surface, on the nearer pixel's side where two meet."""
         values = np.asarray(cv2.remap(raw, self.map_x, self.map_y, cv2.INTER_LINEAR), np.float32)
         at_jump = np.flatnonzero(blocks_across_jumps(raw).ravel().take(self.block))
-        x, y = np.rint(self.map_x.ravel()[at_jump]), np.rint(self.map_y.ravel()[at_jump])
-        values.ravel()[at_jump] = raw[y.astype(np.intp), x.astype(np.intp)]
+        values.ravel()[at_jump] = _one_sided(raw, self.map_x.ravel()[at_jump], self.map_y.ravel()[at_jump])
         return values
+
+
+def _one_sided(raw: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(N,) raw depth at (x, y) on the surface of the nearest pixel, prolonged by that surface's own slope."""
+    column, row = np.rint(x).astype(np.intp), np.rint(y).astype(np.intp)
+    nearest = raw[row, column]
+    value = nearest.copy()
+    for offset, before, after in (
+        (x - column, raw[row, column - 1], raw[row, column + 1]),
+        (y - row, raw[row - 1, column], raw[row + 1, column]),
+    ):
+        slope = np.where(np.abs(after - nearest) < np.abs(nearest - before), after - nearest, nearest - before)
+        slope[np.abs(slope) > _STEEPEST * nearest] = 0
+        value += offset.astype(np.float32) * slope
+    return value
 
 
 @lru_cache(maxsize=2)

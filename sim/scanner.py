@@ -36,11 +36,12 @@ class Pattern:
     def elevations(self) -> NDArray[np.float64]:
         """(rows,) elevation of each row, top first [rad]."""
         step = 2 * np.pi / self.columns
-        return math.radians(ELEVATION_TOP_DEG) - (np.arange(self.rows, dtype=np.float64) + 0.5) * step
+        top = math.radians(ELEVATION_TOP_DEG) - step / 2
+        return np.linspace(top, top - (self.rows - 1) * step, self.rows)
 
     def azimuths(self) -> NDArray[np.float64]:
         """(columns,) azimuth of each column, anticlockwise from the scanner's x axis [rad]."""
-        return np.arange(self.columns) * (2 * np.pi / self.columns)
+        return np.arange(self.columns, dtype=np.float64) * (2 * np.pi / self.columns)
 
 
 PATTERNS: dict[str, Pattern] = {
