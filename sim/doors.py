@@ -10,21 +10,17 @@ from typing import Literal
 import mujoco
 import numpy as np
 
+from sim.closing import ClosedLeaf, close_pair, close_single, joined, rectangle_normal
 from sim.errors import SimError
-from sim.leaves import Leaf, find_leaves
-from sim.openings import fit, stands_on_floor, wall_normal
+from sim.leaves import find_leaves
 from sim.rays import Rays
 
-_STEP = np.radians(2.0)
-_SLIDE_STEP = 0.02
 _CLEARLY_OPEN = np.radians(1.0)
-_ALIGNED = np.radians(0.05)
-"""Drawn closed is closed, whatever the last digits of a wall's normal say [rad]."""
-_SLACK = np.radians(5.0)
-_MEETING = 0.15
-"""Two leaves whose widths leave at most this much of the way between their hinges are one double door [m]."""
 _WEDGE = 15.0
 """Friction that keeps a leaf where it was put, against springs and leaning hinges [N m or N]."""
+
+_STIFF = (0.9999, 0.9999, 0.001, 0.5, 2.0)
+"""Impedance of that friction: with MuJoCo's own, a leaf on a leaning hinge creeps by a degree in a minute."""
 
 
 @dataclass(frozen=True)
@@ -65,24 +61,6 @@ class DoorTruth:
 
 
 @dataclass(frozen=True)
-class ClosedLeaf:
-    """A leaf with the joint position that closes it."""
-
-    leaf: Leaf
-    closed: float
-    """Joint position [rad or m] at which the leaf fills its opening."""
-    sign: float
-    """+1 if growing joint positions open it, else -1."""
-    reach: tuple[float, float]
-    """Openings that the joint allows, counted along `sign` [rad or m]."""
-
-    @property
-    def corners(self) -> np.ndarray:
-        """(4, 3) of the closed leaf in world [m]."""
-        return self.leaf.corners_at(self.closed)
-
-
-@dataclass(frozen=True)
 class Door:
     """A doorway and what closes it; what does not change while the doors move."""
 
@@ -101,9 +79,10 @@ def true_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[DoorTruth, .
 def find_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Door, ...]:
     """Finds the doors of any scene from its geometry; names and joint zeros mean nothing.
 
-    A leaf is a slab of a door's size (see `sim.leaves`). It is a door's if at some joint position it stands on the floor
-    in an opening of the static geometry that is passable behind it: that position is "closed". A refrigerator's or a
-    wardrobe's door closes nothing that leads anywhere. Two leaves that fill an opening only together are a double door.
+    A leaf is a slab of a door's size (see `sim.leaves`). It is a door's if at some joint position it stands on the
+    floor in an opening of the static geometry that is passable behind it: that position is "closed". A refrigerator's
+    or a wardrobe's door closes nothing that leads anywhere. Two leaves that fill an opening only together are one
+    double door.
 
     Args:
         model: the compiled scene, with or without the robot.
@@ -112,15 +91,13 @@ def find_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Door, ...]:
     moving = frozenset(np.flatnonzero(model.body_weldid != 0).tolist())
     rays = Rays(model, data, moving)
     leaves = find_leaves(model, data)
-    doors: list[Door] = []
+    singles = [(leaf, close_single(model, rays, leaf)) for leaf in leaves]
+    doors = [Door((single,)) for _, single in singles if single]
     paired: set[int] = set()
-    for first, second in combinations(leaves, 2):
-        if not paired & {first.joint, second.joint} and (pair := _close_pair(model, rays, first, second)):
+    for first, second in combinations([leaf for leaf, single in singles if not single], 2):
+        if not paired & {first.joint, second.joint} and (pair := close_pair(model, rays, first, second)):
             doors.append(Door(pair))
             paired |= {first.joint, second.joint}
-    for leaf in leaves:
-        if leaf.joint not in paired and (single := _close_single(model, rays, leaf)):
-            doors.append(Door((single,)))
     return tuple(sorted(doors, key=lambda door: door.leaves[0].leaf.joint))
 
 
@@ -128,8 +105,8 @@ def measure_door(model: mujoco.MjModel, data: mujoco.MjData, door: Door) -> Door
     """The truth about one door from the joints' present positions."""
     leaves = tuple(_measure_leaf(model, data, one) for one in door.leaves)
     first = door.leaves[0]
-    normal = _opening_direction(first) if first.leaf.kind == "hinged" else _normal(first.corners)
-    corners = first.corners if len(door.leaves) == 1 else _joined(first.corners, door.leaves[1].corners)
+    normal = _opening_direction(first) if first.leaf.kind == "hinged" else rectangle_normal(first.corners)
+    corners = first.corners if len(door.leaves) == 1 else joined(first.corners, door.leaves[1].corners)
     right = np.cross([0, 0, 1.0], normal)
     if (corners[1] - corners[0]) @ right < 0:
         corners = corners[[1, 0, 3, 2]]
@@ -139,8 +116,8 @@ def measure_door(model: mujoco.MjModel, data: mujoco.MjData, door: Door) -> Door
 def put_doors(model: mujoco.MjModel, data: mujoco.MjData, doors: Sequence[Door], openings: Mapping[str, float]) -> None:
     """Opens doors as asked and wedges all of them where they then stand.
 
-    A wedge is friction in the joint, a spring at rest and a servo that holds: a scan takes a minute, and what it saw must
-    still be so in the next one. The robot can push a wedged leaf aside.
+    A wedge is friction in the joint, a spring at rest and a servo that holds: a scan takes a minute, and what it saw
+    must still be so in the next one. The robot can push a wedged leaf aside.
 
     Args:
         model: friction and springs of the leaves' joints are changed in it.
@@ -185,105 +162,10 @@ def _wedge(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> None:
     position, speed = int(model.jnt_qposadr[joint]), int(model.jnt_dofadr[joint])
     model.qpos_spring[position] = data.qpos[position]
     model.dof_frictionloss[speed] = max(float(model.dof_frictionloss[speed]), _WEDGE)
+    model.dof_solimp[speed] = _STIFF
     drives = (model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT) & (model.actuator_trnid[:, 0] == joint)
     for actuator in np.flatnonzero(drives & (model.actuator_biasprm[:, 1] < 0)):
         data.ctrl[actuator] = data.qpos[position] * model.actuator_gear[actuator, 0]
-
-
-def _close_single(model: mujoco.MjModel, rays: Rays, leaf: Leaf) -> ClosedLeaf | None:
-    """The leaf at the joint position at which it alone fills an opening, if there is one."""
-    natural = _natural_positions(model, leaf)
-    good = _closing(rays, leaf, natural) or _closing(rays, leaf, _grid(model, leaf))
-    if not good:
-        return None
-    closed = good[0] if good[0] in natural else good[len(good) // 2]
-    if leaf.kind == "hinged":
-        closed = _aligned(rays, leaf, closed)
-    return _oriented(model, leaf, closed)
-
-
-def _closing(rays: Rays, leaf: Leaf, values: Sequence[float]) -> list[float]:
-    """Those of the joint positions at which the leaf fills an opening best, in their order."""
-    scores: dict[float, float] = {}
-    for value in values:
-        corners = leaf.corners_at(value)
-        found = fit(rays, corners)
-        if found.closes and stands_on_floor(rays, corners):
-            scores[value] = found.score
-    return [value for value, score in scores.items() if score >= max(scores.values()) - 0.25]
-
-
-def _aligned(rays: Rays, leaf: Leaf, value: float) -> float:
-    """The joint position near a closing one at which the leaf is parallel to its wall [rad]."""
-    corners = leaf.corners_at(value)
-    normal = wall_normal(rays, corners)
-    turn = _turn(_normal(corners), normal) * np.sign(leaf.axis[2]) if normal is not None else 0.0
-    return value + float(turn) if abs(turn) > _ALIGNED else value
-
-
-def _close_pair(model: mujoco.MjModel, rays: Rays, first: Leaf, second: Leaf) -> tuple[ClosedLeaf, ClosedLeaf] | None:
-    """Both leaves at the positions at which together they fill one opening, if they do."""
-    if first.kind != second.kind:
-        return None
-    if first.kind == "sliding":
-        return _close_sliding_pair(model, rays, first, second)
-    between = (second.anchor - first.anchor) * [1, 1, 0]
-    widths = _width(first.slab.corners_in_world) + _width(second.slab.corners_in_world)
-    bottoms = abs(first.slab.corners_in_world[0, 2] - second.slab.corners_in_world[0, 2])
-    if abs(np.linalg.norm(between) - widths) > _MEETING or bottoms > 0.1:
-        return None
-    pair = []
-    for leaf, towards in ((first, between), (second, -between)):
-        now = (leaf.slab.corners_in_world[1] - leaf.slab.corners_in_world[0]) * [1, 1, 0]
-        pair.append(leaf.value + _turn(now, towards, half=False) * np.sign(leaf.axis[2]))
-    corners = _joined(first.corners_at(pair[0]), second.corners_at(pair[1]))
-    if not (fit(rays, corners).closes and stands_on_floor(rays, corners)):
-        return None
-    normal = wall_normal(rays, corners)
-    turn = _turn(_normal(corners), normal) if normal is not None else 0.0
-    closed = [value + turn * np.sign(leaf.axis[2]) for value, leaf in zip(pair, (first, second), strict=True)]
-    return _oriented(model, first, closed[0]), _oriented(model, second, closed[1])
-
-
-def _close_sliding_pair(
-    model: mujoco.MjModel, rays: Rays, first: Leaf, second: Leaf
-) -> tuple[ClosedLeaf, ClosedLeaf] | None:
-    for a in _natural_positions(model, first):
-        for b in _natural_positions(model, second):
-            one, other = first.corners_at(a), second.corners_at(b)
-            meeting = min(np.linalg.norm(one[i, :2] - other[j, :2]) for i in (0, 1) for j in (0, 1))
-            corners = _joined(one, other)
-            if meeting < _MEETING and fit(rays, corners).closes and stands_on_floor(rays, corners):
-                return _oriented(model, first, a), _oriented(model, second, b)
-    return None
-
-
-def _natural_positions(model: mujoco.MjModel, leaf: Leaf) -> list[float]:
-    """Where a user would put "closed": as drawn, at an end of the range, as it stands."""
-    drawn = float(model.qpos0[model.jnt_qposadr[leaf.joint]])
-    ends = model.jnt_range[leaf.joint].tolist() if model.jnt_limited[leaf.joint] else []
-    return [drawn, *ends, leaf.value]
-
-
-def _grid(model: mujoco.MjModel, leaf: Leaf) -> list[float]:
-    """Joint positions all over the range, for leaves that nobody drew closed."""
-    full, step, slack = (np.pi, _STEP, _SLACK) if leaf.kind == "hinged" else (2.0, _SLIDE_STEP, 0.0)
-    low, high = leaf.value - full, leaf.value + full
-    if model.jnt_limited[leaf.joint] and np.ptp(model.jnt_range[leaf.joint]) < 2 * full:
-        low, high = model.jnt_range[leaf.joint] + [-slack, slack]
-    return np.arange(low, high, step).tolist()
-
-
-def _oriented(model: mujoco.MjModel, leaf: Leaf, closed: float) -> ClosedLeaf:
-    """Adds which way the leaf opens, and how far, from the joint's range."""
-    full = np.pi if leaf.kind == "hinged" else 2.0
-    low, high = (-full, full)
-    if model.jnt_limited[leaf.joint]:
-        low, high = np.clip(model.jnt_range[leaf.joint] - closed, -full, full)
-    slack = _SLACK if leaf.kind == "hinged" else 0.05
-    if high <= slack and -low > high:
-        return ClosedLeaf(leaf, closed, -1.0, (max(float(-high), 0.0), float(-low)))
-    return ClosedLeaf(leaf, closed, 1.0, (float(low) if low < -slack else max(float(low), 0.0), float(high)))
 
 
 def _measure_leaf(model: mujoco.MjModel, data: mujoco.MjData, one: ClosedLeaf) -> LeafTruth:
@@ -306,25 +188,3 @@ def _opening_direction(one: ClosedLeaf) -> np.ndarray:
     along = (one.corners[1] - one.corners[0]) * [1, 1, 0]
     direction = np.cross(one.sign * one.leaf.axis * [0, 0, 1], along)
     return direction / np.linalg.norm(direction)
-
-
-def _joined(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """The upright rectangle (4, 3) over two leaves in one plane, from the first one's outer edge to the other's."""
-    ends = max(((one[i], other[j]) for i in (0, 1) for j in (0, 1)), key=lambda pair: np.linalg.norm(pair[0] - pair[1]))
-    bottom, top = min(one[0, 2], other[0, 2]), max(one[3, 2], other[3, 2])
-    return np.array([[*ends[k][:2], z] for k, z in ((0, bottom), (1, bottom), (1, top), (0, top))])
-
-
-def _normal(corners: np.ndarray) -> np.ndarray:
-    normal = np.cross(corners[1] - corners[0], corners[3] - corners[0]) * [1, 1, 0]
-    return normal / np.linalg.norm(normal)
-
-
-def _turn(start: np.ndarray, end: np.ndarray, *, half: bool = True) -> float:
-    """Signed angle about the vertical from one direction to another [rad]; `half` takes opposite normals as one."""
-    angle = np.arctan2(start[0] * end[1] - start[1] * end[0], start[0] * end[0] + start[1] * end[1])
-    return float((angle + np.pi / 2) % np.pi - np.pi / 2) if half else float(angle)
-
-
-def _width(corners: np.ndarray) -> float:
-    return float(np.linalg.norm(corners[1] - corners[0]))

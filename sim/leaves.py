@@ -149,5 +149,5 @@ def _main_normal(normals: np.ndarray, area: np.ndarray) -> np.ndarray:
 def _weighted_quantiles(values: np.ndarray, weights: np.ndarray, shares: tuple[float, float]) -> tuple[float, float]:
     order = np.argsort(values)
     reached = np.cumsum(weights[order]) / weights.sum()
-    low, high = (float(values[order][min(np.searchsorted(reached, share), len(order) - 1)]) for share in shares)
-    return low, high
+    low, high = np.minimum(np.searchsorted(reached, shares), len(order) - 1)
+    return float(values[order[low]]), float(values[order[high]])

@@ -17,6 +17,8 @@ _BESIDE = (0.03, 0.08, 0.15)
 _SHARES = (0.2, 0.5, 0.8)
 _SILL = 0.3
 """The floor is at most this far below a door; below a tall window it is farther [m]."""
+_APPROACH = 0.45
+"""Where in front of a door to look for the floor: clear of the sill of a window [m]."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +61,10 @@ def fit(rays: Rays, corners: np.ndarray) -> Fit:
 
 
 def stands_on_floor(rays: Rays, corners: np.ndarray) -> bool:
-    """Whether there is a floor just below a rectangle (4, 3) in world; the sill of a window is not one."""
-    middle = (corners[0] + corners[1]) / 2
-    return rays.floor_below(middle + [0, 0, 0.02], _SILL) is not None
+    """Whether a floor lies little below a rectangle (4, 3) in world on either side of it, as none does at a window."""
+    middle = (corners[0] + corners[1]) / 2 + [0, 0, 0.02]
+    normal = _axes(corners)[2]
+    return any(rays.floor_below(middle + way * normal, _SILL) is not None for way in (_APPROACH, -_APPROACH))
 
 
 def wall_normal(rays: Rays, corners: np.ndarray) -> np.ndarray | None:

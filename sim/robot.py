@@ -74,6 +74,7 @@ class Robot:
         self._radii = parameters.wheel_radius * (1 + parameters.encoder_scale_error * rng.standard_normal(2))
         self._track_width = parameters.track_width * (1 + parameters.track_width_error * rng.standard_normal())
         self._speed = np.zeros(2)
+        self._touched: set[int] = set()
         self._waited = 0.0
         self._started = self._data.time
         self.base_from_scanner = self._mount("beam_origin")
@@ -116,6 +117,7 @@ class Robot:
         command = np.clip([v, w], -limits, limits)
         timestep = self._model.opt.timestep
         remaining = max(1, round(duration / timestep))
+        self._touched = set()
         while remaining > 0:
             steps = min(remaining, max(1, round(self._parameters.control_period / timestep)))
             self._speed += np.clip(command - self._speed, -ramps * steps * timestep, ramps * steps * timestep)
@@ -123,6 +125,7 @@ class Robot:
             before = self._wheel_angles()
             mujoco.mj_step(self._model, self._data, steps)
             self._reckon(self._wheel_angles() - before)
+            self._touched |= self._touching()
             remaining -= steps
         mujoco.mj_forward(self._model, self._data)
 
@@ -142,13 +145,8 @@ class Robot:
         self.settle()
 
     def contacts(self) -> tuple[str, ...]:
-        """Names of the scene's geoms that the robot touches, without those that its wheels stand on."""
-        touched = []
-        for contact in self._data.contact:
-            mine = [int(self._model.geom_bodyid[geom]) in self._bodies for geom in contact.geom]
-            if mine[0] != mine[1] and contact.dist <= 0 and abs(contact.frame[2]) < _STANDING:
-                touched.append(geom_name(self._model, int(contact.geom[0] if mine[1] else contact.geom[1])))
-        return tuple(sorted(set(touched)))
+        """Names of the scene's geoms that the robot touched in the last step, other than what it stood on."""
+        return tuple(sorted(geom_name(self._model, geom) for geom in self._touched))
 
     def shape(self) -> RobotShape:
         """The robot's visible surface."""
@@ -175,6 +173,15 @@ class Robot:
         half = w * self._parameters.track_width / 2
         self._data.ctrl[self._left] = (v - half) / self._parameters.wheel_radius
         self._data.ctrl[self._right] = (v + half) / self._parameters.wheel_radius
+
+    def _touching(self) -> set[int]:
+        """Geoms of the scene that the robot touches other than from above."""
+        touching = set()
+        for contact in self._data.contact:
+            mine = [int(self._model.geom_bodyid[geom]) in self._bodies for geom in contact.geom]
+            if mine[0] != mine[1] and contact.dist <= 0 and abs(contact.frame[2]) < _STANDING:
+                touching.add(int(contact.geom[0] if mine[1] else contact.geom[1]))
+        return touching
 
     def _wheel_angles(self) -> np.ndarray:
         return self._data.qpos[self._encoders].copy()

@@ -59,10 +59,11 @@ class Scene:
 def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, keyframe: str | None = None) -> Scene:
     """Loads any MJCF, puts MoPAD into it and sets the doors.
 
-    The state is the keyframe's of that name, else the first keyframe, else qpos0. MoPAD starts at a site named `start`,
-    else at the freest spot inside a room; a scene that already holds a MoPAD keeps it where it is. Doors stay where they
-    are put, as if wedged. The scene's own options stay, except for what driving needs: gravity (where there was none, the
-    scene's own bodies go on floating), contacts and actuation, the implicitfast integrator, at most 4 ms a step.
+    The state is the keyframe's of that name, else the first keyframe, else qpos0. MoPAD starts at a site named
+    `start`, else at the freest spot inside a room; a scene that already holds a MoPAD keeps it where it is. Doors stay
+    where they are put, as if wedged. The scene's own options stay, except for what driving needs: gravity (where there
+    was none, the scene's own bodies go on floating), contacts and actuation, the implicitfast integrator, at most 4 ms
+    a step, and a plane to drive on where the floor is a picture only.
 
     Args:
         path: the MJCF file.
@@ -211,11 +212,11 @@ def _lay_floor(spec: mujoco.MjSpec, height: float) -> None:
 
 def set_base(model: mujoco.MjModel, data: mujoco.MjData, prefix: str, world_from_base: np.ndarray) -> None:
     """Sets the robot down at a pose (4, 4), at rest, and updates what follows from it."""
-    joint = model.joint(f"{prefix}free")
-    start, speed = int(joint.qposadr[0]), int(joint.dofadr[0])
+    start = int(model.joint(f"{prefix}free").qposadr[0])
     data.qpos[start : start + 3] = world_from_base[:3, 3]
     mujoco.mju_mat2Quat(data.qpos[start + 3 : start + 7], np.ascontiguousarray(world_from_base[:3, :3]).ravel())
-    data.qvel[speed : speed + 6] = 0.0
+    robot = sorted(bodies_below(model, model.body(f"{prefix}base").id))
+    data.qvel[np.isin(model.dof_bodyid, robot)] = 0.0
     mujoco.mj_forward(model, data)
 
 

@@ -22,6 +22,7 @@ TURNING_RADIUS = 0.6
 
 _BODY_HEIGHTS = (0.06, 0.15, 0.3, 0.45, 0.65, 0.9, 1.15, 1.4)
 _WALL_HEIGHTS = (1.15, 1.45)
+_SLOPES = np.radians([10, 20, 30, 40, 50, 60, 70, 80])
 _COARSE = (12, (0.3, 0.9))
 _FINE = (120, _BODY_HEIGHTS)
 _FREE_ENOUGH = 4.0
@@ -75,9 +76,9 @@ def freest_spot(model: mujoco.MjModel, data: mujoco.MjData, rays: Rays) -> np.nd
         SimError: no floor, no walls, or no room for the robot.
     """
     standing = _standing_points(model, data, rays)
-    if not standing:
-        raise SimError(f"no floor under the start: the scene has no level surface with {HEADROOM} m of free height")
     spots = [spot for spot in (_glance(rays, point, covered) for point, covered in standing) if spot.enclosure > 0]
+    if not spots and not any(_supported(rays, point) for point, _ in standing):
+        raise SimError(f"no floor under the start: the scene has no level surface with {HEADROOM} m of free height")
     if not spots:
         raise SimError(f"no wall within {WALL_REACH:.0f} m of the start: nothing as high as the scanner stands around")
     grid = _grid_step(*_bounds(model, data))
@@ -116,6 +117,9 @@ def require_surroundings(rays: Rays, world_from_base: np.ndarray, footprint: tup
         inside = hits.distances < border
         if inside.any():
             raise SimError(f"the start at {_at(position)} is inside {rays.name(int(hits.geoms[inside][0]))}")
+    above = rays.cast(position + [0, 0, _BODY_HEIGHTS[0]], np.array([[0.0, 0, 1]]), HEADROOM - _BODY_HEIGHTS[0])
+    if np.isfinite(above.distances[0]):
+        raise SimError(f"the start at {_at(position)} is inside {rays.name(int(above.geoms[0]))}")
 
 
 def upright_pose(position: np.ndarray, heading: float) -> np.ndarray:
@@ -159,10 +163,19 @@ def _standing_points(model: mujoco.MjModel, data: mujoco.MjData, rays: Rays) -> 
 def _distances(
     rays: Rays, position: np.ndarray, azimuths: np.ndarray, heights: Sequence[float], cutoff: float = WALL_REACH
 ) -> np.ndarray:
-    """Distances (heights, azimuths) [m] from above a point of the floor to what stands around, at most the cutoff."""
+    """Distances (azimuths,) [m] from above a point of the floor to what stands around, at most the cutoff."""
     directions = horizontal(azimuths)
     found = [rays.cast(position + [0, 0, height], directions, cutoff).distances for height in heights]
-    return np.minimum(found, cutoff)
+    return np.minimum(found, cutoff).min(0)
+
+
+def _overhang(rays: Rays, position: np.ndarray, azimuths: np.ndarray) -> np.ndarray:
+    """Horizontal distances (azimuths,) [m] to boards at the robot's height, which level rays pass above and below."""
+    directions = np.cos(_SLOPES)[:, None, None] * horizontal(azimuths) + np.sin(_SLOPES)[:, None, None] * [0, 0, 1]
+    hits = rays.cast(position + [0, 0, _BODY_HEIGHTS[0]], directions.reshape(-1, 3), _FREE_ENOUGH)
+    distances = hits.distances.reshape(len(_SLOPES), -1)
+    level = np.where(distances * np.sin(_SLOPES)[:, None] < HEADROOM, distances * np.cos(_SLOPES)[:, None], np.inf)
+    return np.minimum(level.min(0), _FREE_ENOUGH)
 
 
 def _glance(rays: Rays, position: np.ndarray, covered: bool) -> Spot:
@@ -174,8 +187,9 @@ def _glance(rays: Rays, position: np.ndarray, covered: bool) -> Spot:
 def _assess(rays: Rays, spot: Spot, look: tuple[int, Sequence[float]]) -> Spot:
     """Adds how free a spot is, seen in so many directions at such heights."""
     azimuths = np.linspace(0, 2 * np.pi, look[0], endpoint=False)
-    free = _distances(rays, spot.position, azimuths, look[1], _FREE_ENOUGH).min(0)
-    return replace(spot, clearance=float(free.min()), heading=float(azimuths[free.argmax()]))
+    free = _distances(rays, spot.position, azimuths, look[1], _FREE_ENOUGH)
+    boards = _overhang(rays, spot.position, azimuths[:: look[0] // 12])
+    return replace(spot, clearance=float(min(free.min(), boards.min())), heading=float(azimuths[free.argmax()]))
 
 
 def _apart(spots: list[Spot], grid: float) -> list[Spot]:
@@ -205,17 +219,19 @@ def _refine(rays: Rays, spot: Spot, step: float) -> Spot:
 def _on_a_floor(rays: Rays, spot: Spot) -> bool:
     """Whether the ground around a spot goes on level, as it does not around a table's or a cabinet's top."""
     azimuths = np.linspace(0, 2 * np.pi, 16, endpoint=False)
-    reach = _distances(rays, spot.position, azimuths, _BODY_HEIGHTS[:2], 4.0).min(0)
+    reach = _distances(rays, spot.position, azimuths, _BODY_HEIGHTS[:2], 4.0)
     level = []
     for share in (0.3, 0.6, 0.9):
         for direction, distance in zip(horizontal(azimuths), reach, strict=True):
             floor = rays.floor_below(spot.position + share * distance * direction + [0, 0, 0.05], 1e3)
             level.append(floor is not None and abs(floor - spot.position[2]) < 0.1)
-    near = [
-        rays.floor_below(spot.position + 0.9 * TURNING_RADIUS * direction + [0, 0, 0.05], 0.1) is not None
-        for direction in horizontal(azimuths)
-    ]
-    return all(near) and float(np.mean(level)) > 0.7
+    return _supported(rays, spot.position) and float(np.mean(level)) > 0.7
+
+
+def _supported(rays: Rays, position: np.ndarray) -> bool:
+    """Whether the ground carries the whole robot."""
+    around = 0.9 * TURNING_RADIUS * horizontal(np.linspace(0, 2 * np.pi, 16, endpoint=False)) + [0, 0, 0.05]
+    return all(rays.floor_below(position + point, 0.1) is not None for point in around)
 
 
 def _at(position: np.ndarray) -> str:
