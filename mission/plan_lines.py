@@ -83,16 +83,19 @@ def find_lines(plan: Floats, normals: Floats, parameters: LineParameters) -> lis
 
 def _directions(headings: Floats, parameters: LineParameters) -> list[float]:
     """Headings [rad] in which many normals point, the richest first, refined to the middle of their peak."""
-    counts = np.bincount((np.rad2deg(headings) % 360).astype(int) % 360, minlength=360).astype(float)
+    fine = np.bincount((np.rad2deg(headings) * 10 % 3600).astype(int) % 3600, minlength=3600).astype(float)
+    counts = fine.reshape(360, 10).sum(axis=1)
     smooth = np.sum([np.roll(counts, k) for k in (-2, -1, 0, 1, 2)], axis=0)
     found: list[float] = []
     while smooth.max() >= parameters.least_points:
         peak = int(np.argmax(smooth))
-        heading = float(np.deg2rad(peak + 0.5))
-        for _ in range(5):  # mean shift
-            off = (headings - heading + np.pi) % (2 * np.pi) - np.pi
-            heading += float(off[np.abs(off) < np.deg2rad(2.5)].mean())
-        found.append(heading)
+        tenth = peak * 10 + 5
+        for _ in range(5):  # mean shift over a window of 5 deg
+            window = np.arange(tenth - 25, tenth + 26)
+            weights = fine[window % 3600]
+            mean = float(np.sum(window * weights) / max(weights.sum(), 1.0))
+            tenth = int(round(mean))
+        found.append(float(np.deg2rad((mean + 0.5) / 10)))
         smooth[np.arange(peak - 3, peak + 4) % 360] = 0
     return found
 

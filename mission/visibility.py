@@ -91,7 +91,8 @@ class Visibility:
             passed[number] = sight.measured > sight.distance + behind / np.maximum(cosine, 1e-3)
             steep = cosine > np.cos(self.parameters.maximum_incidence)
             void = self._void(number, places_in_world, sight) & steep
-            void[void] = self._free_near(number, places_in_world[void])
+            if void.any():
+                void[void] = self._free_near(number, places_in_world[void])
             passed[number] |= void
         return passed
 

@@ -83,22 +83,28 @@ def scan(
     elevations = np.deg2rad(np.arange(60 - step_deg / 2, -40, -step_deg))
     azimuths = np.deg2rad(np.arange(0, 360 - step_deg / 2, step_deg))
     e, a = np.meshgrid(elevations, azimuths, indexing="ij")
-    d = np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)], axis=-1) @ world_from_scanner[:3, :3].T
-    ranges = np.full(e.shape, np.inf)
+    d = np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)]).reshape(3, -1)
+    d = (world_from_scanner[:3, :3] @ d).astype(np.float32)
+    ranges = np.full(e.size, np.inf, np.float32)
     for b in boxes:
         ranges = np.minimum(ranges, _ranges_to(b, world_from_scanner[:3, 3], d))
+    ranges = ranges.reshape(e.shape)
     ranges += noise * np.random.default_rng(seed).standard_normal(ranges.shape)
     ranges[(ranges < minimum_range) | (ranges > 600)] = np.nan
     return Scan(elevations, azimuths, ranges.astype(np.float32), np.zeros(ranges.shape, np.float32), 0.0)
 
 
-def _ranges_to(b: Box, origin: NDArray[np.float64], d: NDArray[np.float64]) -> NDArray[np.float64]:
+def _ranges_to(b: Box, origin: NDArray[np.float64], d: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(N,) distance to a box along beams (3, N); infinite where they miss it."""
     c, s = np.cos(b.yaw), np.sin(b.yaw)
     box_from_world = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
-    o = box_from_world @ (origin - np.array(b.centre))
-    with np.errstate(divide="ignore"):
-        inverse = 1 / (d @ box_from_world.T)
-    half = np.array(b.size) / 2
-    near, far = (-half - o) * inverse, (half - o) * inverse
-    enter, leave = np.minimum(near, far).max(axis=-1), np.maximum(near, far).min(axis=-1)
-    return np.where((enter <= leave) & (enter > 0), enter, np.inf)
+    start = box_from_world @ (origin - np.array(b.centre))
+    enter = np.full(d.shape[1], -np.inf, np.float32)
+    leave = np.full(d.shape[1], np.inf, np.float32)
+    for along, half, at in zip(box_from_world.astype(np.float32), np.array(b.size) / 2, start, strict=True):
+        with np.errstate(divide="ignore"):
+            slowness = 1 / (along[0] * d[0] + along[1] * d[1] + along[2] * d[2])
+        near, far = np.float32(-half - at) * slowness, np.float32(half - at) * slowness
+        np.maximum(enter, np.minimum(near, far), out=enter)
+        np.minimum(leave, np.maximum(near, far), out=leave)
+    return np.where((enter <= leave) & (enter > 0), enter, np.float32(np.inf))
