@@ -358,11 +358,11 @@ def test_a_robot_turns_on_the_spot_only_if_its_corners_find_room() -> None:
     driven = drive(robot, np.array([[0.0, 0.0], [0.0, 2.0]]), hokuyos(robot, wall), footprint=FOOTPRINT)
     assert driven.outcome == "blocked"
     assert body_gap(robot.true, wall) > 0.01
-    # Straight along it, it drives, even where it stands closer than the guard of 3 cm.
-    for y in (-0.35, -0.295):
-        wall = [(-2.0, 2.0, -0.5, y)]
+    # Straight along it, it drives; and away from a post that is already within the guard of 3 cm.
+    for obstacles in (wall, [(-0.2, 0.2, -0.5, -0.295)]):
         robot = Unicycle(pose(0, 0))
-        assert drive(robot, np.array([[0.0, 0.0], [1.0, 0.0]]), hokuyos(robot, wall), footprint=FOOTPRINT).arrived
+        path = np.array([[0.0, 0.0], [1.0, 0.0]])
+        assert drive(robot, path, hokuyos(robot, obstacles), footprint=FOOTPRINT).arrived
 
 
 def test_noise_of_a_single_reading_does_not_stop_the_robot() -> None:
