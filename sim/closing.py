@@ -12,7 +12,8 @@ from sim.leaves import Leaf
 from sim.openings import fit, stands_on_floor, wall_normal
 from sim.rays import Rays
 
-_STEP = np.radians(2.0)
+_STEP = np.radians(6.0)
+"""Of the search for "closed"; 3 deg beside it a leaf's edge is 5 cm out of its plane, well within the wall [rad]."""
 _SLIDE_STEP = 0.02
 _ALIGNED = np.radians(0.05)
 """Drawn closed is closed, whatever the last digits of a wall's normal say [rad]."""

@@ -47,17 +47,17 @@ def fit(rays: Rays, corners: np.ndarray) -> Fit:
     """Judges a rectangle (4, 3) in world (first edge bottom, second edge bottom, second top, first top)."""
     along, up, normal = _axes(corners)
     width, height = _size(corners)
-    sides = [
-        np.mean([_solid_beside(rays, corners[start] + share * height * up, sign * along, normal) for share in _SHARES])
-        for start, sign in ((0, -1), (1, 1))
-    ]
-    if min(sides) < 0.5:
-        return Fit(0.0, (float(sides[0]), float(sides[1])), 0.0)
+    sides = [0.0, 0.0]
+    for side, outward in ((1, along), (0, -along)):
+        edge = [_solid_beside(rays, corners[side] + share * height * up, outward, normal) for share in _SHARES]
+        sides[side] = float(np.mean(edge))
+        if sides[side] < 0.5:
+            return Fit(0.0, (sides[0], sides[1]), 0.0)
     top = [_solid_beside(rays, corners[3] + share * width * along, up, normal) for share in _SHARES]
     through = [
         _passable(rays, corners[0] + a * width * along + b * height * up, normal) for a in _SHARES for b in _SHARES
     ]
-    return Fit(float(np.mean(through)), (float(sides[0]), float(sides[1])), float(np.mean(top)))
+    return Fit(float(np.mean(through)), (sides[0], sides[1]), float(np.mean(top)))
 
 
 def stands_on_floor(rays: Rays, corners: np.ndarray) -> bool:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+import copy
 from dataclasses import dataclass
 
 import mujoco
@@ -45,13 +44,13 @@ class Rays:
         *,
         only_solid: bool = False,
     ):
-        self._model = model
         self._data = data
         ghosts = (model.geom_contype == 0) & (model.geom_conaffinity == 0)
         if not only_solid:
             ghosts &= model.geom_group >= _VISUAL_GROUPS
         ignored = ghosts | np.isin(model.geom_bodyid, sorted(ignored_bodies))
-        self._groups = np.where(ignored, _IGNORED_GROUP, np.minimum(model.geom_group, _IGNORED_GROUP - 1))
+        self._model = copy.copy(model)  # whose groups say what to ignore; the caller's model stays as it is
+        self._model.geom_group[:] = np.where(ignored, _IGNORED_GROUP, np.minimum(model.geom_group, _IGNORED_GROUP - 1))
 
     def cast(self, origin: np.ndarray, directions: np.ndarray, cutoff: float = 1e3) -> Hits:
         """Casts rays from one point.
@@ -63,11 +62,10 @@ class Rays:
         """
         n = len(directions)
         geoms, distances, normals = np.empty(n, np.int32), np.empty(n), np.zeros(3 * n)
-        with self._regrouped():
-            mujoco.mj_multiRay(
-                *(self._model, self._data, np.asarray(origin, float), np.ascontiguousarray(directions, float).ravel()),
-                *(_KEPT_GROUPS, True, -1, geoms, distances, normals, n, cutoff),
-            )
+        mujoco.mj_multiRay(
+            *(self._model, self._data, np.asarray(origin, float), np.ascontiguousarray(directions, float).ravel()),
+            *(_KEPT_GROUPS, True, -1, geoms, distances, normals, n, cutoff),
+        )
         missed = geoms < 0
         return Hits(np.where(missed | (distances > cutoff), np.inf, distances), geoms, normals.reshape(n, 3))
 
@@ -76,16 +74,15 @@ class Rays:
         levels = []
         ceiling, z = np.inf, top
         point, down, geom, normal = np.array([x, y, top]), np.array([0.0, 0, -1]), np.zeros(1, np.int32), np.zeros(3)
-        with self._regrouped():
-            while z > bottom:
-                point[2] = z
-                distance = mujoco.mj_ray(self._model, self._data, point, down, _KEPT_GROUPS, True, -1, geom, normal)
-                if distance < 0:
-                    break
-                height = z - distance
-                if normal[2] > 0.9:
-                    levels.append((height, ceiling - height))
-                ceiling, z = height, height - 1e-4
+        while z > bottom:
+            point[2] = z
+            distance = mujoco.mj_ray(self._model, self._data, point, down, _KEPT_GROUPS, True, -1, geom, normal)
+            if distance < 0:
+                break
+            height = z - distance
+            if normal[2] > 0.9:
+                levels.append((height, ceiling - height))
+            ceiling, z = height, height - 1e-4
         return levels
 
     def floor_below(self, point: np.ndarray, reach: float) -> float | None:
@@ -96,15 +93,6 @@ class Rays:
     def name(self, geom: int) -> str:
         """What to call a geom when speaking to the user: its own name, its body's, or its number."""
         return geom_name(self._model, geom)
-
-    @contextmanager
-    def _regrouped(self) -> Iterator[None]:
-        original = self._model.geom_group.copy()
-        self._model.geom_group[:] = self._groups
-        try:
-            yield
-        finally:
-            self._model.geom_group[:] = original
 
 
 def horizontal(azimuths: np.ndarray) -> np.ndarray:

@@ -27,8 +27,9 @@ _COARSE = (12, (0.3, 0.9))
 _FINE = (120, _BODY_HEIGHTS)
 _FREE_ENOUGH = 4.0
 """Where nothing stands nearer than this, no place is freer than another [m]."""
-_MAX_COLUMNS = 20_000
-_FINEST_GRID = 0.35
+_MAX_COLUMNS = 8_000
+_MOST_ASSESSED = 400
+_FINEST_GRID = 0.4
 _REFINED = 5
 
 
@@ -83,7 +84,8 @@ def freest_spot(model: mujoco.MjModel, data: mujoco.MjData, rays: Rays) -> np.nd
         raise SimError(f"no wall within {WALL_REACH:.0f} m of the start: nothing as high as the scanner stands around")
     grid = _grid_step(*_bounds(model, data))
     for indoors in sorted({spot.indoors for spot in spots}, reverse=True):
-        alike = [_assess(rays, spot, _COARSE) for spot in spots if spot.indoors == indoors]
+        alike = [spot for spot in spots if spot.indoors == indoors]
+        alike = [_assess(rays, spot, _COARSE) for spot in alike[:: 1 + len(alike) // _MOST_ASSESSED]]
         refined = [_refine(rays, spot, grid) for spot in _apart(alike, grid)]
         good = [spot for spot in refined if spot.clearance >= TURNING_RADIUS and _on_a_floor(rays, spot)]
         if good:
