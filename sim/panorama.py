@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.curved import curved_ranges, is_curved
 from sim.render import Renderer, View, looking_along
 from sim.render.jumps import blocks_across_jumps
 
@@ -49,17 +50,32 @@ def cast_panorama(
         (E, A) inverse range [1/m], next to 0 where there is nothing; (E, A) value of the geom that was met.
     """
     wedge = _wedge(elevations.tobytes(), azimuths.tobytes())
+    curved = is_curved(renderer.model)
     inverse_range = np.empty((len(elevations), len(azimuths)), np.float32)
     values = np.empty_like(inverse_range)
-    for k in range(WEDGES):
-        columns = slice(k * wedge.columns, (k + 1) * wedge.columns)
-        depth = renderer.depth(data, wedge.view(world_from_scanner, k))
+    for number in range(WEDGES):
+        columns = slice(number * wedge.columns, (number + 1) * wedge.columns)
+        depth = renderer.depth(data, wedge.view(world_from_scanner, number))
         raw = wedge.sample(depth.raw)
         raw += np.float32(renderer.inverse_depth_offset / renderer.inverse_depth_scale)
         inverse_range[:, columns] = cv2.multiply(raw, wedge.cosine, scale=renderer.inverse_depth_scale)
         segments = np.asarray(cv2.remap(depth.segments, wedge.map_x, wedge.map_y, cv2.INTER_NEAREST), np.uint16)
         values[:, columns] = value_of_geom[depth.geom_ids].take(segments)
+
+        row, column = np.divmod(np.flatnonzero(curved[depth.geom_ids].take(segments)), wedge.columns)
+        geoms = depth.geom_ids[segments[row, column]]
+        column += columns.start
+        beams = directions(elevations[row], azimuths[column]) @ world_from_scanner[:3, :3].T
+        drawn = 1 / inverse_range[row, column].astype(np.float64)
+        exact = curved_ranges(drawn, renderer.model, data, geoms, world_from_scanner[:3, 3], beams)
+        inverse_range[row, column] = 1 / exact
     return inverse_range, values
+
+
+def directions(elevations: NDArray[np.float64], azimuths: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N, 3) unit vectors, x forward and z up, of (N,) elevations and azimuths [rad]."""
+    level = np.cos(elevations)
+    return np.stack([level * np.cos(azimuths), level * np.sin(azimuths), np.sin(elevations)], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)

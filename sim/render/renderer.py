@@ -17,8 +17,8 @@ from sim.render.context import make_context
 from sim.render.view import View
 from sim.render.visibility import SHOWN, effective_rgba, showing, visible_geoms
 
-_QUALITY = {"numslices": 64, "numstacks": 16, "numquads": 1, "offsamples": 0, "shadowsize": 0}
-"""Tessellation: 64 sides leave 0.12 % of the radius between a drawn cylinder and a true one. No multisampling: depth
+_QUALITY = {"numslices": 48, "numstacks": 16, "numquads": 1, "offsamples": 0, "shadowsize": 0}
+"""Tessellation: 48 sides leave 0.2 % of the radius between a drawn cylinder and a true one. No multisampling: depth
 and segments must not be blended."""
 _MAX_SEGMENTS = 2**16 - 2
 
