@@ -23,6 +23,9 @@ ROBOT_PREFIX = "mopad/"
 FOOTPRINT = (0.97, 0.57)
 """Length and width of MoPAD over everything: the chassis, and the outside of the tracks with 4 mm each side [m]."""
 
+_GROUND = f"{ROBOT_PREFIX}ground"
+_GROUND_BIT = 1 << 30
+"""Collision bit of the plane that carries MoPAD where the scene's floor does not; MoPAD has all bits."""
 _ORIGIN_SITE = "beam_origin"
 _GRAVITY = (0.0, 0.0, -9.81)
 _LONGEST_STEP = 0.004
@@ -78,22 +81,18 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
     prefix = _attach_robot(spec) if held is None else held
     _make_drivable(spec, prefix)
 
-    def prepare() -> tuple[mujoco.MjModel, mujoco.MjData, tuple[Door, ...]]:
-        model = _compile(spec, path)
-        data = mujoco.MjData(model)
-        _reset(model, data, keyframe, path)
-        doors = find_doors(model, data)
-        put_doors(model, data, doors, door_angles or {})
-        return model, data, doors
-
-    model, data, doors = prepare()
+    model = _compile(spec, path)
+    data = mujoco.MjData(model)
+    _reset(model, data, keyframe, path)
+    doors = find_doors(model, data)
+    put_doors(model, data, doors, door_angles or {})
     robot_bodies = bodies_below(model, model.body(f"{prefix}base").id)
     try:
         pose = _start_pose(model, data, prefix, robot_bodies, held is not None)
-        if not _carries(model, data, robot_bodies, pose):
-            _lay_floor(spec, float(pose[2, 3]))
-            model, data, doors = prepare()
         set_base(model, data, prefix, pose)
+        leaves = [bodies_below(model, one.leaf.body) for door in doors for one in door.leaves]
+        _free_from_hulls(model, data, robot_bodies.union(*leaves))
+        _let_stand(model, data, robot_bodies, pose)
         _require_free(model, data, robot_bodies, pose)
     except SimError as error:
         raise SimError(f"scene {path}: {error}") from None
@@ -166,6 +165,10 @@ def _make_drivable(spec: mujoco.MjSpec, prefix: str) -> None:
     if spec.option.integrator != mujoco.mjtIntegrator.mjINT_IMPLICIT:
         spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.timestep = min(spec.option.timestep, _LONGEST_STEP)
+    if _GROUND not in {geom.name for geom in spec.geoms}:
+        plane = mujoco.mjtGeom.mjGEOM_PLANE
+        last = spec.worldbody.add_body(name=_GROUND)  # after all others, so that the scene's geoms keep their numbers
+        last.add_geom(name=_GROUND, type=plane, size=[0, 0, 1], group=3, contype=0, conaffinity=0)
 
 
 def _reset(model: mujoco.MjModel, data: mujoco.MjData, keyframe: str | None, path: Path) -> None:
@@ -196,18 +199,29 @@ def _start_pose(
     return pose
 
 
-def _carries(model: mujoco.MjModel, data: mujoco.MjData, robot_bodies: frozenset[int], pose: np.ndarray) -> bool:
-    """Whether the floor at the start is one to stand on; many scenes have floors that are pictures only."""
-    floor = Rays(model, data, robot_bodies, only_solid=True).floor_below(pose[:3, 3] + [0, 0, 0.3], 0.35)
-    return floor is not None
+def _let_stand(model: mujoco.MjModel, data: mujoco.MjData, robot_bodies: frozenset[int], pose: np.ndarray) -> None:
+    """Puts a plane under the robot where the floor is a picture only."""
+    solid = Rays(model, data, robot_bodies, only_solid=True)
+    if solid.floor_below(pose[:3, 3] + [0, 0, 0.3], 0.35) is None:
+        log.info("the floor has no collisions: MoPAD drives on a plane at z = %.3f m", pose[2, 3])
+        ground = model.geom(_GROUND).id
+        model.geom_pos[ground, 2] = pose[2, 3]
+        model.geom_contype[ground] = _GROUND_BIT
+        model.body_contype[model.geom_bodyid[ground]] = _GROUND_BIT
+    mujoco.mj_forward(model, data)
 
 
-def _lay_floor(spec: mujoco.MjSpec, height: float) -> None:
-    """Lays an invisible plane that carries the robot and touches nothing else."""
-    log.info("the floor has no collisions: MoPAD drives on a plane at z = %.3f m", height)
-    spec.worldbody.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], pos=[0, 0, height], group=3, contype=1 << 30, conaffinity=0
-    )
+def _free_from_hulls(model: mujoco.MjModel, data: mujoco.MjData, bodies: frozenset[int]) -> None:
+    """Takes meshes whose convex hulls swallow the robot or a leaf out of the collisions.
+
+    MuJoCo collides with a mesh's hull: in a room that is one mesh the robot would be inside a solid block, and a wall
+    with a hole would push the leaf out of it.
+    """
+    for geom in _deep_contacts(model, data, bodies):
+        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and model.body_weldid[model.geom_bodyid[geom]] == 0:
+            log.warning("%s would collide by its convex hull: nothing collides with it", geom_name(model, geom))
+            model.geom_contype[geom] = model.geom_conaffinity[geom] = 0
+    mujoco.mj_forward(model, data)
 
 
 def set_base(model: mujoco.MjModel, data: mujoco.MjData, prefix: str, world_from_base: np.ndarray) -> None:
@@ -221,9 +235,16 @@ def set_base(model: mujoco.MjModel, data: mujoco.MjData, prefix: str, world_from
 
 
 def _require_free(model: mujoco.MjModel, data: mujoco.MjData, robot_bodies: frozenset[int], pose: np.ndarray) -> None:
+    for geom in _deep_contacts(model, data, robot_bodies):
+        x, y, z = pose[:3, 3]
+        raise SimError(f"the start at ({x:.2f}, {y:.2f}, {z:.2f}) is inside {geom_name(model, geom)}")
+
+
+def _deep_contacts(model: mujoco.MjModel, data: mujoco.MjData, bodies: frozenset[int]) -> list[int]:
+    """Geoms of other bodies that some of these bodies are in."""
+    deep = []
     for contact in data.contact:
-        mine = [int(model.geom_bodyid[geom]) in robot_bodies for geom in contact.geom]
+        mine = [int(model.geom_bodyid[geom]) in bodies for geom in contact.geom]
         if contact.dist < -_SINKING and mine[0] != mine[1]:
-            other = int(contact.geom[0] if mine[1] else contact.geom[1])
-            x, y, z = pose[:3, 3]
-            raise SimError(f"the start at ({x:.2f}, {y:.2f}, {z:.2f}) is inside {geom_name(model, other)}")
+            deep.append(int(contact.geom[0] if mine[1] else contact.geom[1]))
+    return deep

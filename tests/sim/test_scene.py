@@ -134,6 +134,18 @@ def test_mopad_stands_on_a_floor_that_is_only_a_picture(tmp_path: Path) -> None:
     assert abs(scene.data.body("mopad/base").xpos[2]) < 0.003
 
 
+SHELL = """
+<asset><mesh name="shell" inertia="shell"
+  vertex="-3 -2 0  3 -2 0  3 2 0  -3 2 0  -3 -2 2.5  3 -2 2.5  3 2 2.5  -3 2 2.5"
+  face="0 1 2  0 2 3  0 4 5  0 5 1  1 5 6  1 6 2  2 6 7  2 7 3  3 7 4  3 4 0"/></asset>"""
+
+
+def test_mopad_is_not_crushed_by_the_convex_hull_of_a_room_that_is_one_mesh(tmp_path: Path) -> None:
+    scene = load(tmp_path, '<geom name="shell" type="mesh" mesh="shell"/><site name="start" pos="1 0 0"/>', extra=SHELL)
+    mujoco.mj_step(scene.model, scene.data, 500)
+    np.testing.assert_allclose(scene.data.body("mopad/base").xpos, [1, 0, 0], atol=0.003)
+
+
 def test_floating_things_of_a_scene_without_gravity_go_on_floating(tmp_path: Path) -> None:
     ball = '<body name="ball" pos="2.5 1.5 2"><freejoint/><geom size="0.1"/></body>'
     scene = load(tmp_path, ROOM + ball, extra='<option gravity="0 0 0"/>')
