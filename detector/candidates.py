@@ -19,8 +19,6 @@ FOOT = 0.3
 FOOT_SUPPORT = 0.4
 STRIP = (0.01, 0.06)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
-SURROUND_DEPTH = 0.045
-"""The wall and its frames lie within this of the wall's plane [m]."""
 FAINT_COLOUR = 0.008
 """Least difference of colour on all sides that sets a surface apart, of 1: two grey values."""
 FAINT_DEPTH = 0.003
@@ -43,6 +41,8 @@ class Scene:
     seen: Image
     edges: Edges
     wall: Mask
+    face: Mask
+    """(H, W) where some beam ended on the wall's face, or on what lies flat on it."""
     floor_row: int
     """First row below the floor."""
     lowest_row: int
@@ -134,14 +134,15 @@ def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]
     return wall, visible, passed
 
 
-def surroundings(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
+def surroundings(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> NDArray[np.float64]:
     """(N, 3) share of the visible strips outside the left, top and right sides that lies in the wall's plane.
 
     A rectangle inside an open doorway, between the jamb and the edge of the leaf, has no wall on one side. 1 where the
     strip is hidden or beyond the image.
     """
     depth = scene.merged.depth
-    plane = scene.sums((np.abs(np.nan_to_num(depth, nan=np.inf)) < SURROUND_DEPTH) & ~scene.edges.sloped)
+    leaf = scene.edges.sloped & (np.abs(np.nan_to_num(depth, nan=np.inf)) < parameters.slab_face)
+    plane = scene.sums(scene.face & ~leaf)
     visible = scene.sums((scene.seen == Visibility.DATA) | (scene.seen == Visibility.THROUGH))
     result = np.ones((len(boxes), 3))
     for i, strip in enumerate(strips(boxes, scene, outside=True)):

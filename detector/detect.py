@@ -54,9 +54,11 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         views = [orthoimage(p, wall, g, parameters) for p, g in zip(points, gaps, strict=True)]
         passed = np.zeros(shape, bool)
         blocked = np.zeros(shape, bool)
+        face = np.zeros(shape, bool)
         for p, g in zip(points, gaps, strict=True):
             passed |= mark(p.passed, wall, g, parameters)
             blocked |= mark(p.blocked, wall, parameters.max_gap_px, parameters)
+            face |= mark(p.slab[np.abs(p.slab[:, 2]) < parameters.slab_face, :2], wall, g, parameters)
     with clock("highlights"):
         even = even_light(views, points, wall.height, parameters)
         highlights = [find_highlights(i, p.camera, wall.height, parameters) for i, p in zip(even, points, strict=True)]
@@ -69,8 +71,8 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
     with clock("wall area"):
         area = find_wall_area(merged, parameters)
     with clock("doors"):
-        search = find_doors(merged, seen, area, wall.height, floor, parameters)
-        rectangles = settle_sides(doorway_rectangles(search), merged, passed, wall.height, parameters)
+        search, scene = find_doors(merged, seen, face, area, (wall.height, floor), parameters)
+        rectangles = settle_sides(doorway_rectangles(search), passed, scene, wall.height)
     with clock("angles"):
         around = np.concatenate([p.around for p in points]) if points else np.zeros((0, 3), np.float32)
         doors: list[Door] = [describe_door(r, merged, seen, around, wall.height, parameters) for r in rectangles]

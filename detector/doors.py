@@ -21,12 +21,14 @@ from detector.candidates import (
 from detector.edges import find_edges
 from detector.parameters import DetectorParameters
 from detector.rectangles import find_lines
-from detector.result import Candidate, DoorSearch, Image, Orthoimage, Rectangle, WallArea
+from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rectangle, WallArea
 
 LINE_SHARE = 0.45
 """Share of the window that a line covers at least: of the shortest side of a door, with occlusion."""
 ALIKE = 0.04
 """Rectangles whose sides all lie this close are readings of the same door [m]."""
+OTHER_LEAF = (0.4, 1.3)
+"""Width of the second leaf of a double door [m]."""
 OPEN_SHARE = 0.15
 """A rectangle that is looked through over more than this share is open."""
 CLEAR_SUPPORT = 0.8
@@ -39,24 +41,33 @@ JUDGED = 80
 
 
 def find_doors(
-    merged: Orthoimage, seen: Image, area: WallArea, height: float, floor: float, parameters: DetectorParameters
-) -> DoorSearch:
+    merged: Orthoimage,
+    seen: Image,
+    face: Mask,
+    area: WallArea,
+    plan: tuple[float, float],
+    parameters: DetectorParameters,
+) -> tuple[DoorSearch, Scene]:
     """Candidate rectangles and the judgement on each.
 
     Args:
         seen: (H, W) `Visibility`.
-        height: Height of the wall [m].
-        floor: Height of the floor along v [m].
+        face: (H, W) where some beam ended on the wall's face.
+        plan: Height of the wall, and of the floor along v [m].
+
+    Returns:
+        The search, and the images it was made on.
     """
+    height, floor = plan
     px = merged.pixel_size
     edges = find_edges(merged, seen, parameters)
     floor_row = min(round((height - floor) / px), merged.depth.shape[0])
     lowest = max(1, floor_row - int(np.ceil(parameters.floor_margin / px)) - 1)
-    scene = Scene(merged, seen, edges, area.mask, floor_row, lowest)
+    scene = Scene(merged, seen, edges, area.mask, face, floor_row, lowest)
     vertical = find_lines(edges.upright[:lowest], 0, round(parameters.min_height / px), LINE_SHARE)
     horizontal = find_lines(edges.level[:lowest], 1, round(parameters.min_width / px), LINE_SHARE)
     boxes = door_boxes(vertical, horizontal, scene, parameters)
-    return DoorSearch(
+    search = DoorSearch(
         colour_edges=edges.colour,
         depth_edges=edges.depth,
         edges=edges.colour | edges.depth,
@@ -64,6 +75,7 @@ def find_doors(
         vertical_lines=np.rint(vertical).astype(np.int32),
         candidates=judge(boxes, scene, height, floor, parameters),
     )
+    return search, scene
 
 
 def judge(
@@ -74,7 +86,7 @@ def judge(
         return ()
     support, feet = side_support(boxes, scene, parameters)
     wall, visible, through = inner_shares(boxes, scene)
-    around = surroundings(boxes, scene)
+    around = surroundings(boxes, scene, parameters)
     wall = np.where(_stand_alone(boxes, support, feet, scene), 0.0, wall)
     reasons = np.full(len(boxes), None, object)
     checks = (
@@ -149,7 +161,8 @@ def _smallest(candidates: list[Candidate]) -> tuple[Candidate, ...]:
     would keep the outline of the frame instead of that of the leaf; the heading is followed. Rectangles a few pixels
     apart are readings of one door: of those the best supported one stands for all.
     """
-    accepted = [c for c in candidates if c.rejected_by is None]
+    fulfilled = [c for c in candidates if c.rejected_by is None]
+    accepted = [c for c in fulfilled if not any(_is_leaf_of(c.rectangle, other.rectangle) for other in fulfilled)]
     accepted.sort(key=lambda c: (c.rectangle.area, c.rectangle.left))
     kept: list[Candidate] = []
     taken: set[int] = set()
@@ -160,13 +173,20 @@ def _smallest(candidates: list[Candidate]) -> tuple[Candidate, ...]:
         taken.update(id(c) for c in alike)
         kept.append(max(alike, key=lambda c: (round(sum(c.side_support), 2), -c.rectangle.area)))
     kept.sort(key=lambda c: c.rectangle.left)
-    losers = [_rejected(c, "minimum size") for c in accepted if not any(c is k for k in kept)]
+    losers = [_rejected(c, "minimum size") for c in fulfilled if not any(c is k for k in kept)]
     return (*kept, *losers, *(c for c in candidates if c.rejected_by is not None))
 
 
 def _alike(a: Rectangle, b: Rectangle) -> bool:
     """Whether all sides lie within a few centimetres."""
     return max(abs(a.left - b.left), abs(a.right - b.right), abs(a.top - b.top)) < ALIKE
+
+
+def _is_leaf_of(leaf: Rectangle, whole: Rectangle) -> bool:
+    """Whether one rectangle is half of another that is a double door: what is left of that is a leaf, too."""
+    level = abs(leaf.top - whole.top) < ALIKE
+    shared = abs(leaf.left - whole.left) < ALIKE or abs(leaf.right - whole.right) < ALIKE
+    return level and shared and OTHER_LEAF[0] <= whole.width - leaf.width <= OTHER_LEAF[1]
 
 
 def _covers(outer: Rectangle, inner: Rectangle) -> bool:

@@ -15,12 +15,16 @@ from detector.result import Image, Mask, Orthoimage
 
 ALONG_PX = 15
 """Smoothing along a hypothetical side: sides are upright or level (section 5), so it blurs noise, not edges."""
-NOISE_FACTOR = 5.0
+COLOUR_ALONG_PX = 31
+"""The same for colour, which is noisier against the steps that matter."""
+NOISE_FACTOR = 4.0
 """A gradient below this many times the wall's median is texture."""
 GRADIENT_STEPS = 1000
 """Grey values per unit of gradient for Otsu's histogram; stronger gradients than 0.255 count as that."""
 CREASE_PX = 6
 """Half length over which a change of slope is measured."""
+SLOPE_NOISE = 4.0
+"""How much less a step counts on a surface that slopes by one: the gaps between samples become steps there."""
 FLAT = 0.1
 """Slope along u up to which a surface counts as parallel to the wall: 6 deg."""
 CREASE = 0.005
@@ -62,14 +66,14 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
 def colour_derivatives(merged: Orthoimage) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """(H, W, 3) change of the colour (0..1) per pixel along the columns and down the rows."""
     colour = nearest(merged.colour, merged.coloured).astype(np.float32) / 255
-    return _derivatives(colour)
+    return _derivatives(colour, COLOUR_ALONG_PX)
 
 
-def _derivatives(image: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def _derivatives(image: NDArray[np.float32], along_px: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Central differences, each of the image smoothed along the other direction."""
     kernel = np.array([[-0.5, 0.0, 0.5]], np.float32)
-    upright = cv2.blur(image, (1, ALONG_PX))
-    level = cv2.blur(image, (ALONG_PX, 1))
+    upright = cv2.blur(image, (1, along_px))
+    level = cv2.blur(image, (along_px, 1))
     replicate = cv2.BORDER_REPLICATE
     return (
         cv2.filter2D(upright, cv2.CV_32F, kernel, borderType=replicate),
@@ -118,9 +122,11 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
     filled = nearest(known, data | through)
     if not (data | through).any():
         return Relief(*(np.zeros_like(data) for _ in range(3)))
-    dx, dy = _derivatives(filled)
+    dx, dy = _derivatives(filled, ALONG_PX)
     slope = _local_slope(dx)
-    dx = dx - slope  # the face of a half-open leaf slopes, and has no edges
+    # the face of a half-open leaf slopes, and has no edges; its noise grows with the slope times the sample spacing
+    trust = 1 / (1 + SLOPE_NOISE * np.abs(slope) / pixel_size)
+    dx, dy = (dx - slope) * trust, dy * trust
     scale = 10_000.0  # derivatives in units of 0.1 mm, as 16-bit integers for Canny
     high = parameters.depth_edge / 2 * scale  # a central difference sees half a step
     found = cv2.Canny(

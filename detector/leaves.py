@@ -39,6 +39,8 @@ def describe_door(
         height: Height of the wall [m].
     """
     if _is_closed(doorway, merged, height, parameters):
+        if doorway.width > MAX_LEAF:
+            return Door(doorway, "double", "closed", (closed_leaf(), closed_leaf()))
         return Door(doorway, "single", "closed", (closed_leaf(),))
     left, right = (fit_leaf(points, doorway, side, parameters) for side in ("left", "right"))
     single = max((fit for fit in (left, right) if fit is not None), key=lambda fit: fit[1], default=None)

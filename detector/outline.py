@@ -5,62 +5,63 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.parameters import DetectorParameters
-from detector.result import Mask, Orthoimage, Rectangle
+from detector.candidates import Scene
+from detector.result import Mask, Rectangle
 
 REACH = 0.05
 """How far from the found line the edge of the hole is looked for [m]."""
 ABSENT = 0.7
-"""Share of a side's length over which the wall's face must be missing inside a hole."""
+"""Share of a side's length over which the wall's face must be missing inside a hole, and present outside."""
+CLEAR = 0.1
+"""Corners that are left out of the profiles [m]."""
+BORDER_PX = 3
+"""Pixels next to the edge that must be hole on one side and face on the other."""
 
 
-def settle_sides(
-    rectangles: tuple[Rectangle, ...],
-    merged: Orthoimage,
-    passed: Mask,
-    height: float,
-    parameters: DetectorParameters,
-) -> tuple[Rectangle, ...]:
-    """Sides moved to the edge of the hole in the wall's face, where there is a hole.
+def settle_sides(rectangles: tuple[Rectangle, ...], passed: Mask, scene: Scene, height: float) -> tuple[Rectangle, ...]:
+    """Sides moved to the border between the wall's face and the hole in it, where the two meet.
 
     Door stops and the far edge of the reveal make lines within the doorway; a leaf that is open or deep in the reveal
     fills, once closed, the whole hole. A leaf flush with the wall has no hole, and keeps its own outline.
 
     Args:
         passed: (H, W) where beams crossed the wall's face.
+        height: Height of the wall [m].
     """
-    return tuple(_settled(r, passed, height, merged.pixel_size) for r in rectangles)
+    face = scene.face & ~passed
+    return tuple(_settled(r, passed, face, height, scene.merged.pixel_size) for r in rectangles)
 
 
-def _settled(rectangle: Rectangle, passed: Mask, height: float, pixel_size: float) -> Rectangle:
+def _settled(rectangle: Rectangle, passed: Mask, face: Mask, height: float, pixel_size: float) -> Rectangle:
     """One rectangle with its left, right and top side settled."""
-    rows = np.s_[int((height - rectangle.top + 0.1) / pixel_size) : int((height - rectangle.bottom - 0.1) / pixel_size)]
-    columns = np.s_[int((rectangle.left + 0.1) / pixel_size) : int((rectangle.right - 0.1) / pixel_size)]
-    across, down = passed[rows].mean(axis=0), passed[:, columns].mean(axis=1)
-    left = _edge(across, rectangle.left / pixel_size, 1, pixel_size)
-    right = _edge(across, rectangle.right / pixel_size, -1, pixel_size)
-    top = _edge(down, (height - rectangle.top) / pixel_size, 1, pixel_size)
-    return Rectangle(left * pixel_size, rectangle.bottom, right * pixel_size, height - top * pixel_size)
+    rows = np.s_[
+        int((height - rectangle.top + CLEAR) / pixel_size) : int((height - rectangle.bottom - CLEAR) / pixel_size)
+    ]
+    columns = np.s_[int((rectangle.left + CLEAR) / pixel_size) : int((rectangle.right - CLEAR) / pixel_size)]
+    across, down = (
+        [m[rows].mean(axis=0) for m in (passed, face)],
+        [m[:, columns].mean(axis=1) for m in (passed, face)],
+    )
+    reach = round(REACH / pixel_size)
+    left = _edge(*across, rectangle.left / pixel_size, reach)
+    flipped = len(across[0]) - _edge(
+        across[0][::-1], across[1][::-1], len(across[0]) - rectangle.right / pixel_size, reach
+    )
+    top = _edge(*down, (height - rectangle.top) / pixel_size, reach)
+    return Rectangle(left * pixel_size, rectangle.bottom, flipped * pixel_size, height - top * pixel_size)
 
 
-def _edge(profile: NDArray, position: float, inward: int, pixel_size: float) -> float:
-    """Border of the hole near a position, in pixel borders from the first pixel; the position if there is none.
+def _edge(hole: NDArray, face: NDArray, position: float, reach: int) -> float:
+    """First border where the face ends and the hole begins, near a position; the position itself if there is none.
 
     Args:
-        profile: Share of each column or row that is looked through.
-        inward: +1 where the doorway lies at higher indices, else -1.
+        hole, face: Share of each column or row that is looked through, and that is wall; the hole at higher indices.
+        position: Where the line is, in borders of pixels.
+        reach: How far to look [px].
     """
-    reach = round(REACH / pixel_size)
-    start = round(position)
-    inside = np.arange(start + inward * reach, start - inward * (reach + 1), -inward) - (inward < 0)
-    inside = inside[(inside >= 0) & (inside < len(profile))]
-    values = profile[inside]
-    hole = np.flatnonzero(values >= ABSENT)
-    if len(hole) == 0:
-        return position
-    outermost = hole[-1]
-    if outermost == len(values) - 1:  # goes on: not the edge of this hole
-        return position
-    pixel = int(inside[outermost])
-    part = float(np.clip(values[outermost + 1], 0, 1))  # the pixel on the border is hole in part
-    return pixel - part if inward > 0 else pixel + 1 + part
+    borders = range(max(BORDER_PX, round(position) - reach), min(len(hole) - BORDER_PX, round(position) + reach + 1))
+    for border in borders:
+        inside, outside = hole[border : border + BORDER_PX], face[border - 1 - BORDER_PX : border - 1]
+        if inside.min() >= ABSENT and len(outside) and outside.min() >= ABSENT:
+            return border - float(hole[border - 1])  # the pixel on the border is hole in part
+    return position

@@ -26,6 +26,9 @@ class DetectorParameters(BaseModel):
         le=0.1,
         description="a point within this of the plane is on the wall's face [m]; 10 sigma of a VZ-400",
     )
+    slab_face: float = Field(
+        0.045, gt=0, le=0.2, description="the wall with frames and skirting lies within this of its plane [m]; ours"
+    )
     floor_margin: float = Field(
         0.015, ge=0, le=0.2, description="strip over the floor that holds floor points [m]; ours"
     )
@@ -74,7 +77,10 @@ class DetectorParameters(BaseModel):
     min_height: float = Field(1.6, gt=0, description="lowest doorway [m]; ours")
     max_height: float = Field(2.6, gt=0, description="highest doorway [m]; ours")
     min_visible: float = Field(
-        0.45, ge=0, le=1, description="least visible share of a panel; section 7.4: 40 % occluded"
+        0.45,
+        ge=0,
+        le=1,
+        description="least visible share of a doorway; ours: an open leaf hides more than the paper's 40 %",
     )
     max_protrusion: float = Field(0.06, ge=0, description="a closed leaf stands out no further than this [m]; ours")
 

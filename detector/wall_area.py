@@ -30,12 +30,11 @@ def find_wall_area(merged: Orthoimage, parameters: DetectorParameters) -> WallAr
         nothing = np.zeros(known.shape, np.int32)
         return WallArea(seeds, np.zeros(0, np.int32), nothing, nothing > 0)
     assigned = adaptive_kmeans(means, parameters)
+    # The paper removes seeds whose |silhouette| is *higher* than delta, which would throw away the consistent ones that
+    # the step is to keep; read as: keep s >= delta. One cluster has no silhouette.
+    kept = assigned
     if assigned.max() > 1:
-        # The paper removes seeds whose |silhouette| is *higher* than delta, which would throw away the consistent ones
-        # that the step is to keep; read as: keep s >= delta.
         kept = np.where(silhouettes(means, assigned) >= parameters.delta, assigned, 0)
-    else:
-        kept = assigned
     clusters = segment(values, known, means, kept, parameters)
     return WallArea(seeds, kept, clusters, clusters == _wall_cluster(clusters) if clusters.any() else clusters > 0)
 
