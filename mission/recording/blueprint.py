@@ -43,7 +43,7 @@ def outlook(points: NDArray[np.float64]) -> Outlook:
     low, high = points.min(axis=0), points.max(axis=0)
     target = (low + high) / 2
     size = max(float(np.linalg.norm(high[:2] - low[:2])), 4.0)
-    return Outlook(target + size * np.array([-0.25, -0.55, 0.8]), target)
+    return Outlook(target + size * np.array([-0.22, -0.48, 0.72]), target)
 
 
 def blueprint(view: Outlook, walls: Sequence[WallTab] = ()) -> rrb.Blueprint:

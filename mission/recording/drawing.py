@@ -151,11 +151,11 @@ def quads(corners: Sequence[NDArray[np.float64]]) -> tuple[NDArray[np.float64], 
     return np.concatenate([*corners]), triangles.reshape(-1, 3)
 
 
-def degrees(angle: float | None) -> str:
+def degrees(angle: float | None, *, digits: int = 1) -> str:
     """An angle for people: "34.8", or "-" where there is none."""
     if angle is None or not np.isfinite(angle):
         return "-"
-    return f"{np.degrees(angle) + 0.0:.1f}".replace("-0.0", "0.0")
+    return f"{round(float(np.degrees(angle)), digits) + 0.0:.{digits}f}"  # + 0.0 makes 0.0 of -0.0
 
 
 def angle_label(evaluation: DoorEvaluation) -> str:

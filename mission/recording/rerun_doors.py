@@ -18,11 +18,12 @@ from mission.recording import entities
 from mission.recording.drawing import angle_label, closed, jpeg, palette, quads, shrink
 from mission.recording.entities import child
 from mission.recording.rerun_world import TRUTH_COLOUR, log_pose
+from mission.rigid import inverted
 
 if TYPE_CHECKING:
     from sim.camera import Photo
 
-PHOTO_WIDTH = 900
+PHOTO_WIDTH = 600
 """Photographs are recorded at most this wide [px]; the MCAP has them in full."""
 
 
@@ -42,7 +43,7 @@ class Shot:
         return sum(self._shown_area(quad) for quad in corners)
 
     def _shown_area(self, quad: NDArray[np.float64]) -> float:
-        camera_from_world = np.linalg.inv(self.world_from_camera)
+        camera_from_world = inverted(self.world_from_camera)
         in_camera = quad @ camera_from_world[:3, :3].T + camera_from_world[:3, 3]
         if in_camera[:, 2].min() < 0.1:
             return 0.0
@@ -100,7 +101,9 @@ class Doors:
             self._draw_door(evaluation, colour=palette(number))
             if evaluation.true_name is not None:
                 self._draw_truth(evaluation.true_name, evaluation.true_leaf_corners_in_world)
-        self._show_best(entities.CAMERA, event.doors)
+        if event.doors:
+            widest = max(event.doors, key=lambda evaluation: np.nan_to_num(evaluation.door.opening_angle))
+            self._show_best(entities.CAMERA, [widest])
         for wall in sorted({evaluation.wall for evaluation in event.doors}):
             entity = child(entities.SHOTS, entities.wall_name(event.room, wall))
             self._show_best(entity, [evaluation for evaluation in event.doors if evaluation.wall == wall])

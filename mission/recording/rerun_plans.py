@@ -66,12 +66,13 @@ class Plans:
     def _draw_candidates(self, event: Planned) -> None:
         candidates = event.plan.candidates
         scores = np.array([candidate.score for candidate in candidates], float)
+        possible = np.array([candidate.reason is None for candidate in candidates], bool)
         self._rec.log(
             entities.CANDIDATES,
             rr.Points3D(
                 [self._on_floor(candidate.position) for candidate in candidates],
-                colors=score_colours(scores),
-                radii=rr.Radius.ui_points(4.0),
+                colors=np.where(possible[:, None], score_colours(scores), np.uint8(90)),
+                radii=rr.Radius.ui_points(np.where(possible, 4.5, 2.0)),
             ),
             rr.AnyValues(
                 score=scores,

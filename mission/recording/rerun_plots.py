@@ -9,7 +9,17 @@ import numpy as np
 import rerun as rr
 
 from mission.evaluation import DoorEvaluation
-from mission.events import DoorsEvaluated, Drove, Event, Labelled, MissionFinished, MissionStarted, Planned
+from mission.events import (
+    DoorsDetected,
+    DoorsEvaluated,
+    Drove,
+    Event,
+    Labelled,
+    MissionFinished,
+    MissionStarted,
+    Planned,
+    Scanned,
+)
 from mission.recording import entities
 from mission.recording.drawing import opening, palette
 from mission.recording.entities import child
@@ -18,21 +28,15 @@ from mission.recording.sentences import level, sentence
 if TYPE_CHECKING:
     from sim.doors import DoorTruth
 
-STATE_NAMES = {
-    "MissionStarted": "start",
-    "Scanned": "scan",
-    "Photographed": "photograph",
-    "Registered": "register",
-    "Coloured": "colour",
-    "Structured": "structure",
-    "Labelled": "label",
-    "Planned": "plan",
-    "Drove": "drive",
-    "DoorsDetected": "detect",
-    "DoorsEvaluated": "evaluate",
-    "MissionFinished": "finished",
+ACTIVITIES: dict[type[Event], str] = {
+    MissionStarted: "start",
+    Scanned: "scan",
+    Planned: "plan",
+    Drove: "drive",
+    DoorsDetected: "detect",
+    MissionFinished: "end",
 }
-"""Lane of the mission: what it has just done."""
+"""Lane of the mission: what the event is the first outcome of."""
 
 
 JOINT_COLOUR = (170, 170, 170)
@@ -47,13 +51,14 @@ class Plots:
         self._true_doors: tuple[DoorTruth, ...] = ()
         self._evaluations: list[DoorEvaluation] = []
         self._joints: dict[str, float] = {}
+        self._styled: set[str] = set()
 
     def draw(self, event: Event) -> None:
         """Draw one event."""
         self._rec.log(entities.LOG, rr.TextLog(sentence(event), level=level(event)))
-        state = STATE_NAMES.get(type(event).__name__)
-        if state is not None:
-            self._rec.log(entities.ACTIVITY, rr.StateChange(state=state))
+        activity = ACTIVITIES.get(type(event))
+        if activity is not None:
+            self._rec.log(entities.ACTIVITY, rr.StateChange(state=activity))
         self._plot(event)
 
     @singledispatchmethod
@@ -64,8 +69,7 @@ class Plots:
     def _(self, event: MissionStarted) -> None:
         self._true_doors = event.true_doors
         for door in event.true_doors:
-            style = rr.SeriesLines(names=f"joint of {door.name}", colors=JOINT_COLOUR, widths=1.5)
-            self._rec.log(child(entities.ANGLES, "joint", door.name), style, static=True)
+            self._style_joint(door.name, JOINT_COLOUR)
         self._plot_joints({door.name: opening(door) for door in event.true_doors})
 
     @_plot.register
@@ -76,16 +80,18 @@ class Plots:
 
     @_plot.register
     def _(self, event: Labelled) -> None:
-        self._plot_coverage(event.room, event.voxels.coverage)
+        self._plot_coverage(event.room, "walls", event.voxels.coverage)
 
     @_plot.register
     def _(self, event: Planned) -> None:
-        self._plot_coverage(event.room, event.plan.coverage)
+        self._plot_coverage(event.room, "structure", event.plan.coverage)
 
     @_plot.register
     def _(self, event: DoorsEvaluated) -> None:
         self._evaluations += event.doors
-        for evaluation in event.doors:
+        for number, evaluation in enumerate(event.doors, start=len(self._evaluations) - len(event.doors)):
+            if evaluation.true_name is not None:
+                self._style_joint(evaluation.true_name, palette(number))
             self._rec.log(child(entities.DOOR_STATES, evaluation.door_id), rr.StateChange(state=evaluation.door.state))
             self._rec.log(child(entities.TABLE, evaluation.door_id), _row(evaluation))
         self._plot_estimates()
@@ -93,6 +99,11 @@ class Plots:
     @_plot.register
     def _(self, event: MissionFinished) -> None:
         self._plot_estimates()
+
+    def _style_joint(self, name: str, colour: tuple[int, int, int]) -> None:
+        """A thin line, in the colour of the estimate once there is one."""
+        style = rr.SeriesLines(names=f"joint of {name}", colors=colour, widths=1.0)
+        self._rec.log(child(entities.ANGLES, "joint", name), style, static=True)
 
     def _plot_joints(self, angles: dict[str, float]) -> None:
         sliding = {door.name for door in self._true_doors if door.kind == "sliding"}
@@ -119,8 +130,12 @@ class Plots:
                     ),
                 )
 
-    def _plot_coverage(self, room: int, coverage: float) -> None:
-        self._rec.log(child(entities.COVERAGE, room), rr.Scalars(100.0 * coverage))
+    def _plot_coverage(self, room: int, what: str, coverage: float) -> None:
+        entity = child(entities.COVERAGE, room, what)
+        if entity not in self._styled:
+            self._styled.add(entity)
+            self._rec.log(entity, rr.SeriesLines(names=f"room {room}: {what}", widths=2.0), static=True)
+        self._rec.log(entity, rr.Scalars(100.0 * coverage))
 
 
 def _row(evaluation: DoorEvaluation) -> rr.AnyValues:

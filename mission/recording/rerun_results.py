@@ -126,13 +126,14 @@ def draw_bars(rec: rr.RecordingStream, entity: str, rows: Sequence[tuple[str, fl
         rows: Name, size, and the size for people; from top to bottom.
     """
     longest = max((abs(size) for _, size, _ in rows), default=0.0) or 1.0
-    tops = [20.0 * number for number in range(len(rows))]
+    pitch = 100.0 / max(len(rows), 5)
+    tops = [pitch * number for number in range(len(rows))]
     lengths = [100.0 * abs(size) / longest for _, size, _ in rows]
     colours = [palette(number) for number in range(len(rows))]
     strips = [[(0.0, top), (length, top)] for length, top in zip(lengths, tops, strict=True)]
-    rec.log(f"{entity}/bars", rr.LineStrips2D(strips, colors=colours, radii=3.0))
+    rec.log(f"{entity}/bars", rr.LineStrips2D(strips, colors=colours, radii=0.15 * pitch))
     labels = [f"{name}: {text}" for name, _, text in rows]
-    places = [(50.0, top + 4.0) for top in tops]  # Rerun writes below the point
+    places = [(50.0, top + 0.2 * pitch) for top in tops]  # Rerun writes below the point
     rec.log(f"{entity}/labels", rr.Points2D(places, labels=labels, colors=colours, radii=0.0, show_labels=True))
 
 
@@ -141,7 +142,7 @@ def _error_row(door: DoorEvaluation) -> tuple[str, float, str]:
         return door.door_id, 0.0, "false positive"
     if door.angle_error is None:
         return door.door_id, 0.0, "angle not seen"
-    return door.door_id, door.angle_error, f"{degrees(door.angle_error)} deg"
+    return door.door_id, door.angle_error, f"{degrees(door.angle_error, digits=2)} deg"
 
 
 def _door_table(doors: Sequence[DoorEvaluation]) -> list[str]:
@@ -155,7 +156,9 @@ def _door_table(doors: Sequence[DoorEvaluation]) -> list[str]:
 def _description(evaluation: DoorEvaluation) -> list[str]:
     door = evaluation.door
     size = f"{door.rectangle.width:.2f} x {door.rectangle.height:.2f}"
-    deviation = f" ± {degrees(evaluation.opening_angle_std)}" if np.isfinite(evaluation.opening_angle_std) else ""
+    deviation = (
+        f" ± {degrees(evaluation.opening_angle_std, digits=2)}" if np.isfinite(evaluation.opening_angle_std) else ""
+    )
     return [evaluation.door_id, door.kind, door.state, size, degrees(door.opening_angle) + deviation]
 
 
@@ -163,7 +166,7 @@ def _comparison(evaluation: DoorEvaluation) -> list[str]:
     areas = evaluation.overlap
     if areas is None:
         return ["false positive", "-", "-", "-"]
-    error = degrees(evaluation.angle_error)
+    error = degrees(evaluation.angle_error, digits=2)
     return [degrees(evaluation.true_angle), error, f"{areas.precision:.3f}", f"{areas.recall:.3f}"]
 
 
@@ -178,5 +181,6 @@ def _metrics(report: Report) -> list[str]:
         "angle_mae_deg": "mean angle error [deg]",
         "angle_max_deg": "largest angle error [deg]",
     }
-    shown = [f"{text} {metrics[key]}" for key, text in words.items() if metrics[key] is not None]
-    return [", ".join(shown)] if any(room.doors or room.missed for room in report.rooms.values()) else []
+    if not any(room.doors or room.missed for room in report.rooms.values()):
+        return []
+    return [f"- {text}: {metrics[key]}" for key, text in words.items() if metrics[key] is not None]

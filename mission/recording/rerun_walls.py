@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import cv2
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from detector.metrics import overlap
 from detector.result import Candidate, Highlights, Orthoimage, Rectangle, WallResult
 from mission.events import DoorsDetected, Event
 from mission.recording import entities
@@ -18,6 +20,9 @@ ACCEPTED, REJECTED = (70, 210, 90), (235, 70, 70)
 LINE = (255, 120, 40)
 SHOWN_CANDIDATES = 12
 """At most so many rejected rectangles are drawn: of a cluttered wall there are thousands."""
+SAME = 0.85
+"""Rejected rectangles with a larger intersection over union look the same."""
+CENTROID = (220, 60, 60)
 TRINARY = np.array([entities.NOTHING, entities.DATA, entities.CENTROID], np.uint8)
 VISIBILITY = np.array([entities.NOTHING, entities.DATA, entities.SEEN_THROUGH, entities.BLOCKED], np.uint8)
 DEPTH_RANGE = 0.15
@@ -86,6 +91,8 @@ def _draw_openings(rec: rr.RecordingStream, entity: str, result: WallResult) -> 
     """Section 5, figure 7."""
     openings = result.openings
     rec.log(f"{entity}/trinary", rr.SegmentationImage(TRINARY[openings.trinary]))
+    centroids = np.argwhere(openings.trinary == 2)[:, ::-1] + 0.5  # (row, column) to (x, y)
+    rec.log(f"{entity}/centroids", rr.Points2D(centroids, colors=CENTROID, radii=rr.Radius.ui_points(2.0)))
     rec.log(f"{entity}/visibility", rr.SegmentationImage(VISIBILITY[openings.visibility]))
     rec.log(f"{entity}/lines", _lines(openings.trinary.shape, openings.horizontal_lines, openings.vertical_lines))
     colours = [ACCEPTED if door else LINE for door in openings.is_door]
@@ -110,10 +117,11 @@ def _draw_wall_area(rec: rr.RecordingStream, entity: str, result: WallResult) ->
 def _draw_search(rec: rr.RecordingStream, entity: str, result: WallResult) -> None:
     """Section 6.2, figures 9 and 10."""
     search = result.search
+    in_colour, in_depth = _widened(search.colour_edges), _widened(search.depth_edges)
     classes = np.zeros(search.edges.shape, np.uint8)
-    classes[search.colour_edges] = entities.COLOUR_EDGE
-    classes[search.depth_edges] = entities.DEPTH_EDGE
-    classes[search.colour_edges & search.depth_edges] = entities.BOTH_EDGES
+    classes[in_colour] = entities.COLOUR_EDGE
+    classes[in_depth] = entities.DEPTH_EDGE
+    classes[in_colour & in_depth] = entities.BOTH_EDGES
     rec.log(f"{entity}/edges/classes", rr.SegmentationImage(classes))
     rec.log(f"{entity}/edges/lines", _lines(classes.shape, search.horizontal_lines, search.vertical_lines))
     shown = shown_candidates(search.candidates)
@@ -132,12 +140,32 @@ def _draw_search(rec: rr.RecordingStream, entity: str, result: WallResult) -> No
 
 
 def shown_candidates(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """The candidates to draw: all accepted ones last, so that they lie on top, and of the rejected ones those that
-    came furthest, by how well their weakest side is supported."""
+    """The candidates to draw, the accepted ones last, so that they lie on top.
+
+    Of the rejected ones those that came furthest, by how well their weakest side is supported, and that are not much
+    the same as one that is shown already.
+    """
     accepted = [candidate for candidate in candidates if candidate.rejected_by is None]
     rejected = [candidate for candidate in candidates if candidate.rejected_by is not None]
     rejected.sort(key=lambda candidate: min(candidate.side_support), reverse=True)
-    return [*rejected[:SHOWN_CANDIDATES], *accepted]
+    shown: list[Candidate] = []
+    for candidate in rejected:
+        if len(shown) == SHOWN_CANDIDATES:
+            break
+        if all(_overlap(candidate.rectangle, other.rectangle) < SAME for other in shown):
+            shown.append(candidate)
+    return [*shown, *accepted]
+
+
+def _overlap(a: Rectangle, b: Rectangle) -> float:
+    """Intersection over union."""
+    areas = overlap(a, b)
+    return areas.true_positive / (areas.true_positive + areas.false_positive + areas.false_negative)
+
+
+def _widened(edges: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Edges three pixels wide: thinner ones vanish when a viewer shrinks the image."""
+    return cv2.dilate(edges.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
 
 
 def _picture(image: NDArray[np.uint8]) -> rr.EncodedImage:
@@ -153,14 +181,17 @@ def _draw_boxes(
     colours: Sequence[tuple[int, int, int]],
     labels: Sequence[str],
 ) -> None:
-    """Rectangles on the wall as boxes in its images, each with its label near its top."""
+    """Rectangles on the wall as boxes in its images, their labels one below the other."""
     pixel, height = result.merged.pixel_size, result.wall.height
     mins = [(r.left / pixel, (height - r.top) / pixel) for r in rectangles]
     sizes = [(r.width / pixel, r.height / pixel) for r in rectangles]
     thickness = rr.Radius.ui_points(1.5)
     rec.log(f"{entity}/boxes", rr.Boxes2D(mins=mins, sizes=sizes, colors=colours, radii=thickness))
-    tops = [(left + width / 2, top) for (left, top), (width, _) in zip(mins, sizes, strict=True)]
-    rec.log(f"{entity}/labels", rr.Points2D(tops, colors=colours, radii=0.0, labels=labels, show_labels=True))
+    places = [
+        (left + width / 2, top + tall * (len(mins) - 1 - number) / len(mins))
+        for number, ((left, top), (width, tall)) in enumerate(zip(mins, sizes, strict=True))
+    ]
+    rec.log(f"{entity}/labels", rr.Points2D(places, colors=colours, radii=0.0, labels=labels, show_labels=True))
 
 
 def _lines(shape: tuple[int, ...], rows: NDArray[np.int32], columns: NDArray[np.int32]) -> rr.LineStrips2D:
@@ -168,4 +199,4 @@ def _lines(shape: tuple[int, ...], rows: NDArray[np.int32], columns: NDArray[np.
     height, width = shape[:2]
     across = [[(0.0, row + 0.5), (width, row + 0.5)] for row in rows]
     down = [[(column + 0.5, 0.0), (column + 0.5, height)] for column in columns]
-    return rr.LineStrips2D(across + down, colors=(*LINE, 160), radii=rr.Radius.ui_points(0.7))
+    return rr.LineStrips2D(across + down, colors=(*LINE, 130), radii=rr.Radius.ui_points(0.5))

@@ -156,7 +156,7 @@ class World:
         names = [f"wall {entities.wall_name(room, number)}" for number in range(1, len(outlines) + 1)]
         entity = child(entities.WALLS, room)
         self._rec.log(f"{entity}/outlines", rr.LineStrips3D(outlines, colors=WALL_COLOUR, radii=0.01))
-        tops = [line[2:4].mean(axis=0) for line in outlines]  # top right and top left
+        tops = [0.85 * line[3] + 0.15 * line[2] for line in outlines]  # left in the upper edge: doors are labelled, too
         self._rec.log(
             f"{entity}/names", rr.Points3D(tops, labels=names, colors=WALL_COLOUR, radii=0.0, show_labels=True)
         )

@@ -43,7 +43,7 @@ def sentence(event: Event) -> str:
         case Structured():
             return f"scan {event.scan_number}: {len(event.structure.walls)} walls"
         case Labelled():
-            return f"scan {event.scan_number}: {event.voxels.coverage:.1%} of the structure seen"
+            return f"scan {event.scan_number}: {event.voxels.coverage:.1%} of the walls seen"
         case Planned():
             return _planned(event)
         case Drove():

@@ -121,7 +121,8 @@ def test_whatever_changes_is_on_all_timelines(recording: Path) -> None:
         "/walls/1.2/candidates/boxes",
         "/walls/1.4/merged/colour",
         "/plots/angle/estimate/1.2-a",
-        "/plots/coverage/1",
+        "/plots/coverage/1/walls",
+        "/plots/coverage/1/structure",
         "/states/activity",
         "/report/summary",
         "/report/configuration",
@@ -197,20 +198,26 @@ def test_an_empty_scan_is_recorded(tmp_path: Path) -> None:
 
 def test_the_summary_quotes_every_door_and_every_miss(recording: Path) -> None:
     text = column(recording, "/report/summary", "TextDocument:text")[-1][0]
-    assert "| 1.2-a | single | semi-open | 0.90 x 2.10 | 30.0 ± 0.4 | 31.0 | -1.0 |" in text
+    assert "| 1.2-a | single | semi-open | 0.90 x 2.10 | 30.0 ± 0.40 | 31.0 | -1.00 |" in text
     assert "missed: `lift`" in text
     assert "**completed**: one room; 2.0 m driven in 2 min 52 s" in text
 
 
-def test_accepted_candidates_are_all_drawn_and_rejected_ones_by_how_far_they_came() -> None:
-    def judged(support: float, rejected_by: str | None) -> Candidate:
-        return Candidate(Rectangle(0, 0, 1, 2), 1.0, 1.0, (support, 1.0, 1.0, 1.0), 0.0, rejected_by)
+def judged(left: float, support: float, rejected_by: str | None) -> Candidate:
+    return Candidate(Rectangle(left, 0, left + 1, 2), 1.0, 1.0, (support, 1.0, 1.0, 1.0), 0.0, rejected_by)
 
-    candidates = [judged(0.9, None)] + [judged(i / 100, "sides") for i in range(50)]
+
+def test_accepted_candidates_are_all_drawn_and_rejected_ones_by_how_far_they_came() -> None:
+    candidates = [judged(0, 0.9, None)] + [judged(i, i / 100, "sides") for i in range(50)]
     shown = shown_candidates(candidates)
     assert len(shown) == SHOWN_CANDIDATES + 1
     assert shown[-1].rejected_by is None  # drawn last, on top
     assert min(c.side_support[0] for c in shown[:-1]) == (50 - SHOWN_CANDIDATES) / 100
+
+
+def test_rejected_candidates_that_look_the_same_are_drawn_once() -> None:
+    shown = shown_candidates([judged(0, 0.5, "sides"), judged(0.02, 0.6, "size"), judged(0.5, 0.4, "size")])
+    assert [c.side_support[0] for c in shown] == [0.6, 0.4]  # 0.98 / 1.02 of the first two is common
 
 
 def test_the_eye_looks_down_on_the_middle_of_the_room() -> None:
