@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from sim.noise import normal_noise
 from sim.render import Depth, Renderer, View, looking_along
 from sim.render.materials import linear_from_srgb, materials_of, srgb_from_linear
-from sim.shading import Gloss, Image, Light, Window, flash_light, seen_from_flash
+from sim.shading import Gloss, Image, Window, flash_light, seen_from_flash
 
 SENSOR = 0.0158, 0.0236
 """Width and height of the sensor, upright [m] (manual, p. 248)."""
@@ -34,7 +35,7 @@ BRIGHT_SHARE, BRIGHT_LEVEL = 0.98, 0.9
 AMBIENT_DISTANCE = 3.0
 """Distance of the flash that ambient light is measured against [m]."""
 
-_NEAREST = 0.3
+_NEAREST = 0.5
 """Nearest surface that the flash's view covers up to the edge of the picture [m]."""
 _LEVELS = 2**12
 """Of the analogue-digital converter."""
@@ -85,8 +86,10 @@ class _Exposure:
 
     albedo: Image
     """(H, W, 3) linear"""
-    light: Light
-    """Of flash and room."""
+    light: Image
+    """(H, W) of flash and room, on matt surfaces."""
+    gloss: Image
+    """(H, W) light of the gloss lobes."""
 
 
 class Camera:
@@ -135,23 +138,24 @@ class Camera:
         self, data: mujoco.MjData, world_from_camera: NDArray[np.float64]
     ) -> tuple[NDArray[np.uint8], Depth, Depth]:
         """Albedo and depth from the lens, and depth from the flash through a window wider by the margin."""
-        lens = self._view(world_from_camera, margin=0)
+        lens = self._view(world_from_camera, margin=(0, 0))
         world_from_flash = world_from_camera.copy()
         world_from_flash[:3, 3] += world_from_camera[:3, :3] @ [FLASH[0], -FLASH[1], 0]  # OpenCV's y is down
         flash = self._view(world_from_flash, margin=self._margin)
         renderer = self._renderer
         return renderer.albedo(data, lens), renderer.depth(data, lens), renderer.depth(data, flash)
 
-    def _view(self, world_from_view: NDArray[np.float64], margin: int) -> View:
-        width, height = self.parameters.width + 2 * margin, self.parameters.height + 2 * margin
+    def _view(self, world_from_view: NDArray[np.float64], margin: tuple[int, int]) -> View:
+        width, height = self.parameters.width + 2 * margin[0], self.parameters.height + 2 * margin[1]
         focal_x, focal_y = self.parameters.focal_px
         across, up = width / 2 / focal_x, height / 2 / focal_y
         return View(world_from_view, -across, across, -up, up, width, height)
 
     @property
-    def _margin(self) -> int:
-        """Parallax between lens and flash at the nearest surface [px]."""
-        return int(np.ceil(max(self.parameters.focal_px) * max(map(abs, FLASH)) / _NEAREST))
+    def _margin(self) -> tuple[int, int]:
+        """Columns and rows of parallax between lens and flash at the nearest surface [px]."""
+        focal_x, focal_y = self.parameters.focal_px
+        return math.ceil(focal_x * abs(FLASH[0]) / _NEAREST) + 1, math.ceil(focal_y * abs(FLASH[1]) / _NEAREST) + 1
 
     def _shade(self, albedo: NDArray[np.uint8], lens: Depth, flash: Depth) -> _Exposure:
         """Lights a rendered shot; pixel by pixel, so that it can be done in any thread."""
@@ -164,13 +168,13 @@ class Camera:
             self._materials.exponent[lens.geom_ids][lens.segments],
         )
         light = flash_light(inverse_depth, seen, FLASH, window, gloss)
-        light.diffuse[...] += np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
-        return _Exposure(np.asarray(cv2.LUT(albedo, _LINEAR), np.float32), light)
+        matt = light.diffuse + np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
+        return _Exposure(np.asarray(cv2.LUT(albedo, _LINEAR), np.float32), matt, light.gloss)
 
     def _develop(self, exposed: _Exposure, gain: float, scanner_from_camera: NDArray[np.float64], seed: int) -> Photo:
         """Sensor and raw converter: photons, noise, clipping, 12 bit, sRGB."""
-        signal = exposed.albedo * cv2.merge([exposed.light.diffuse * np.float32(gain)] * 3)
-        signal += cv2.merge([exposed.light.gloss * np.float32(gain)] * 3)
+        signal = exposed.albedo * cv2.merge([exposed.light * np.float32(gain)] * 3)
+        signal += cv2.merge([exposed.gloss * np.float32(gain)] * 3)
         if self.parameters.noise:  # photon noise of more than a few electrons is normal
             sigma = signal * np.float32(1 / FULL_WELL)
             sigma += np.float32((READ_NOISE / FULL_WELL) ** 2)
@@ -181,7 +185,7 @@ class Camera:
         signal *= np.float32(_LEVELS - 1)
         signal += np.float32(0.5)
         image = _SRGB.take(signal.astype(np.uint16))
-        highlights = exposed.light.gloss * np.float32(gain) > self.parameters.highlight_level
+        highlights = exposed.gloss * np.float32(gain) > self.parameters.highlight_level
         focal_x, focal_y = self.parameters.focal_px
         height, width = highlights.shape
         intrinsics = np.array([[focal_x, 0, width / 2], [0, focal_y, height / 2], [0, 0, 1]])
@@ -202,7 +206,7 @@ def _gain(shots: list[_Exposure]) -> float:
     Colours of several photographs are merged, so all shots of a turn share it. The light of the gloss is left out: it
     may clip, as in life.
     """
-    samples = [shot.albedo[::8, ::8].max(axis=2) * shot.light.diffuse[::8, ::8] for shot in shots]
+    samples = [shot.albedo[::8, ::8].max(axis=2) * shot.light[::8, ::8] for shot in shots]
     brightness = np.concatenate([sample[sample > 0] for sample in samples])
     lowest, highest = ((GUIDE_NUMBER / aperture) ** 2 for aperture in reversed(APERTURES))
     if not len(brightness):

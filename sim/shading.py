@@ -66,57 +66,60 @@ def flash_light(
         window: of the picture.
         gloss: of the surfaces.
     """
-    x, y, z = _normals(inverse_depth, window)
-    to_flash = (flash[0] * inverse_depth - window.across, flash[1] * inverse_depth - window.up)  # times depth; z is -1
-    reach2 = to_flash[0] ** 2 + to_flash[1] ** 2 + 1
-    reach = np.sqrt(reach2)
-    cosine = np.maximum((x * to_flash[0] + y * to_flash[1] - z) / reach, 0)
-    irradiance = inverse_depth**2 / reach2
-    irradiance *= seen_by_flash
-    away = np.sqrt(window.across**2 + window.up**2 + 1)  # the ray from the lens, likewise
-    half = (to_flash[0] / reach - window.across / away, to_flash[1] / reach - window.up / away, -1 / reach - 1 / away)
-    half_cosine = (x * half[0] + y * half[1] + z * half[2]) / np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
-    lobe = np.exp(gloss.exponent * np.log(np.clip(half_cosine, 1e-6, 1)))
+    to_right, upward, ahead = _gradient(inverse_depth, window)  # the normal, pointing away, by an unknown length
+    length = np.sqrt(to_right**2 + upward**2 + ahead**2)
+    across, up = window.across, window.up
+    away = np.sqrt(across**2 + up**2 + 1)  # length of the ray from the lens (across, up, 1)
+    flash_x, flash_y = flash[0] * inverse_depth - across, flash[1] * inverse_depth - up
+    reach = np.sqrt(flash_x**2 + flash_y**2 + 1)  # length of the ray to the flash (flash_x, flash_y, -1); both x depth
+
+    facing_flash = np.maximum((ahead - to_right * flash_x - upward * flash_y) / (length * reach), 0)
+    facing_lens = inverse_depth / (length * away)
+    between = (1 - flash_x * across - flash_y * up) / (reach * away)  # cosine between flash and lens
+    half = (facing_flash + facing_lens) / np.sqrt(2 + 2 * between)  # cosine of the normal to the half vector
+    irradiance = (inverse_depth / reach) ** 2 * seen_by_flash
+    lobe = np.exp(gloss.exponent * np.log(np.clip(half, 1e-6, 1)))
     lobe *= gloss.height
     lobe *= irradiance
-    lobe[cosine <= 0] = 0
-    return Light(diffuse=irradiance * cosine, gloss=lobe)
+    lobe *= facing_flash > 0
+    return Light(diffuse=irradiance * facing_flash, gloss=lobe)
 
 
 def seen_from_flash(
-    inverse_depth: Image, flash_inverse_depth: Image, flash: tuple[float, float], window: Window, margin: int
+    inverse_depth: Image,
+    flash_inverse_depth: Image,
+    flash: tuple[float, float],
+    window: Window,
+    margin: tuple[int, int],
 ) -> Image:
     """(H, W) 1 where the flash reaches the surface, 0 in its shadow.
 
     Args:
         inverse_depth: (H, W) 1/z from the lens [1/m].
-        flash_inverse_depth: (H + 2 margin, W + 2 margin) 1/z from the flash, looking the same way through a window
-            that is wider by the margin [1/m].
+        flash_inverse_depth: 1/z from the flash, looking the same way through a window that is larger by the margin on
+            all sides [1/m].
         flash: position of the flash right of and above the lens [m].
         window: of the picture from the lens.
-        margin: [px]
+        margin: columns and rows [px].
     """
     height, width = inverse_depth.shape
     # From the flash, which looks the same way, a point has the same depth and is shifted by the parallax.
-    column = np.arange(width, dtype=np.float32) + np.float32(margin)
-    row = np.arange(height, dtype=np.float32)[:, None] + np.float32(margin)
+    column = np.arange(width, dtype=np.float32) + np.float32(margin[0])
+    row = np.arange(height, dtype=np.float32)[:, None] + np.float32(margin[1])
     map_x = column - np.float32(window.focal_x * flash[0]) * inverse_depth
     map_y = row - np.float32(window.focal_y * flash[1]) * inverse_depth
     nearest = cv2.remap(flash_inverse_depth, map_x, map_y, cv2.INTER_LINEAR)
     return (nearest <= inverse_depth * np.float32(1 + _SHADOW_BIAS)).astype(np.float32)
 
 
-def _normals(inverse_depth: Image, window: Window) -> tuple[Image, Image, Image]:
-    """Unit normals towards the lens, three (H, W) components.
+def _gradient(inverse_depth: Image, window: Window) -> tuple[Image, Image, Image]:
+    """Normals away from the lens, each divided by the distance of its plane: three (H, W) components.
 
-    Over a plane 1/z is linear in the tangents (u, v); its gradient there and its value at u = v = 0 are the plane's
-    normal divided by its distance.
+    Over a plane 1/z is linear in the tangents (u, v): its slopes, and its value at u = v = 0, are these components.
     """
     to_right = _slope(inverse_depth, axis=1) * np.float32(window.focal_x)
     upward = _slope(inverse_depth, axis=0) * np.float32(window.focal_y)
-    ahead = inverse_depth - window.across * to_right - window.up * upward
-    length = -np.sqrt(to_right**2 + upward**2 + ahead**2)
-    return to_right / length, upward / length, ahead / length
+    return to_right, upward, inverse_depth - window.across * to_right - window.up * upward
 
 
 def _slope(picture: Image, axis: int) -> Image:
@@ -125,5 +128,5 @@ def _slope(picture: Image, axis: int) -> Image:
     first, last = (steps[:1], steps[-1:]) if axis == 0 else (steps[:, :1], steps[:, -1:])
     before = np.concatenate([first, steps], axis=axis)
     after = np.concatenate([steps, last], axis=axis)
-    np.copyto(before, after, where=np.abs(after) < np.abs(before))
-    return before
+    closer = (np.abs(after) < np.abs(before)).view(np.uint8)
+    return np.asarray(cv2.copyTo(after, closer, before))
