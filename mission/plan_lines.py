@@ -20,7 +20,7 @@ class LineParameters(BaseModel):
     softness: float = Field(default=0.006, gt=0, description="Tukey width of the last fit: posters do not pull [m]")
     least_points: int = Field(default=150, ge=10, description="of a line: 3 cm apart, half a metre by 0.3 m")
     column: float = Field(default=0.1, gt=0, description="width of the columns that a wall is judged by [m]")
-    top_band: float = Field(default=0.25, gt=0, description="a wall reaches this near to the ceiling [m]")
+    top_band: float = Field(default=0.15, gt=0, description="a wall reaches this near to the ceiling [m]")
     least_length: float = Field(default=0.3, gt=0, description="of a wall [m]")
     recess: tuple[float, float] = Field(
         default=(0.2, 0.8), description="a surface with a like one this far behind it is furniture, not wall [m]"
@@ -146,6 +146,8 @@ class Columns:
     """(K,) least coordinate along the line [m]."""
     highs: Floats
     """(K,) greatest coordinate along the line [m]."""
+    bottoms: Floats
+    """(K,) height of the lowest point [m]."""
     tops: Floats
     """(K,) height of the highest point [m]."""
     rows: NDArray[np.int_]
@@ -182,14 +184,18 @@ def columns_of(
     on_line = (depth > -parameters.thickness) & (np.isnan(facing) | (facing > 0.8))
     behind = (depth < -nearest) & (facing > 0.97)
 
+    facing_it, counts = np.unique(column[on_line & (facing > 0.8)], return_counts=True)
+    firm = facing_it[counts >= 3]  # else it is the edge of something that only crosses the line
+    on_line &= np.isin(column, np.concatenate([firm - 1, firm, firm + 1]))
     numbers = np.unique(column[on_line])
     place = np.searchsorted(numbers, column[on_line])
-    tops, lows, highs = np.full((3, len(numbers)), -np.inf)
+    bottoms, tops, lows, highs = np.full((4, len(numbers)), -np.inf)
     np.maximum.at(tops, place, z[on_line])
+    np.maximum.at(bottoms, place, -z[on_line])
     np.maximum.at(highs, place, along[on_line])
     np.maximum.at(lows, place, -along[on_line])
     row = ((z[on_line] - heights[0]) / parameters.column).astype(int)
     cells = np.unique(place * 10000 + row)
     rows = np.bincount(cells // 10000, minlength=len(numbers))
     crowded, counts = np.unique(column[behind], return_counts=True)
-    return Columns(numbers, -lows, highs, tops, rows, np.isin(numbers, crowded[counts >= 10]))
+    return Columns(numbers, -lows, highs, -bottoms, tops, rows, np.isin(numbers, crowded[counts >= 10]))

@@ -18,6 +18,10 @@ from mission.visibility import Visibility
 Floats = NDArray[np.float64]
 
 
+_NEAR = 0.02
+"""A wall that ends this near to a corner ends there [m]."""
+
+
 class WallParameters(BaseModel):
     """What a wall is, and where it goes on unseen."""
 
@@ -26,6 +30,8 @@ class WallParameters(BaseModel):
     least_top: float = Field(default=1.8, gt=0, description="a wall without a ceiling is at least this high [m]")
     doorway: float = Field(default=1.5, ge=0, description="a gap in a wall up to this wide is bridged [m]")
     hidden_gap: float = Field(default=4.0, ge=0, description="bridged up to this if nobody looked through it [m]")
+    least_lintel: float = Field(default=1.8, gt=0, description="above the floor: lower it hangs on a wall [m]")
+    widest_lintel: float = Field(default=2.5, gt=0, description="over a doorway: wider it is a beam [m]")
     lines: LineParameters = Field(default_factory=LineParameters)
 
 
@@ -88,7 +94,7 @@ class WallFinder:
         heights = (self.floor + 0.03, np.inf if ceiling is None else ceiling - 0.03)
         surfaces = [columns_of(line, self.points, self.normals, heights, self.parameters.lines) for line in self.lines]
         top = ceiling if ceiling is not None else _common_top(surfaces, self.floor + self.parameters.least_top)
-        reaching = [self._reaching(columns, top) for columns in surfaces]
+        reaching = [self._reaching(line, s, top) for line, s in zip(self.lines, surfaces, strict=True)]
         seen = self._seen_first(reaching, self._segments(reaching, top))
         segments = self._segments(seen, top)
         if not segments:
@@ -96,7 +102,7 @@ class WallFinder:
         walls: list[WallRectangle] = []
         loops = []
         for loop in room_loops(self.lines, segments, self.scanners):
-            pieces = [piece for edge in loop.edges() for piece in self._pieces(edge, segments, seen, top)]
+            pieces = [piece for k in range(len(loop.lines)) for piece in self._pieces(loop, k, segments, seen, top)]
             numbers = np.full(len(pieces), OPEN)
             for k, (line, a, b) in enumerate(pieces):
                 if line != OPEN:
@@ -108,10 +114,25 @@ class WallFinder:
             raise MissionError("no wall found round the scanner")
         return Outline(tuple(walls), tuple(loops))
 
-    def _reaching(self, columns: Columns, top: float) -> Columns:
-        """Columns that may be wall: up to the top, and with nothing like them close behind."""
+    def _reaching(self, line: PlanLine, columns: Columns, top: float) -> Columns:
+        """Columns that may be wall: up to the top, with nothing like them close behind, and nothing free under them
+        but what may be a doorway; so a beam or a hanging cupboard is none."""
         band = self.parameters.lines.top_band
-        return columns.chosen((columns.tops > top - band) & (columns.rows >= 2) & ~columns.recessed)
+        columns = columns.chosen((columns.tops > top - band) & (columns.rows >= 2) & ~columns.recessed)
+        hanging = self._free_below(line, columns)
+        lintel = hanging & (columns.bottoms > self.floor + self.parameters.least_lintel)
+        widest = self.parameters.widest_lintel / self.parameters.lines.column
+        for run in np.split(np.flatnonzero(lintel), np.flatnonzero(np.diff(columns.numbers[lintel]) > 1) + 1):
+            lintel[run] = len(run) <= widest
+        return columns.chosen(~hanging | lintel)
+
+    def _free_below(self, line: PlanLine, columns: Columns) -> NDArray[np.bool_]:
+        """Columns (K,) that end well above the floor, and some scan looked through under them."""
+        free = columns.bottoms > self.floor + 0.6
+        plan = line.at((columns.lows[free] + columns.highs[free]) / 2)
+        places = np.column_stack([plan, (self.floor + columns.bottoms[free]) / 2])
+        free[free] = self.visibility.looked_through(places, _upright(line, places), behind=0.04).any(axis=0)
+        return free
 
     def _segments(self, surfaces: Sequence[Columns], top: float) -> list[Segment]:
         """Stretches of columns, with the gaps bridged that doors, windows and furniture may make."""
@@ -134,8 +155,8 @@ class WallFinder:
         line = self.lines[number]
         plan = line.at(np.arange(start + 0.05, end, 0.1))
         places = np.column_stack([plan, np.full(len(plan), top - 0.15)])
-        normals = np.broadcast_to([line.normal[0], line.normal[1], 0.0], places.shape)
-        return bool(self.visibility.looked_through(places, normals, behind=0.1).any(axis=0).mean() < 0.5)
+        passed = self.visibility.looked_through(places, _upright(line, places), behind=0.1)
+        return bool(passed.any(axis=0).mean() < 0.5)
 
     def _seen_first(self, surfaces: Sequence[Columns], segments: Sequence[Segment]) -> list[Columns]:
         """The columns that some scanner in front of them sees with no wall between, in plan."""
@@ -152,23 +173,28 @@ class WallFinder:
         return seen
 
     def _pieces(
-        self, edge: tuple[int, Floats, Floats], segments: Sequence[Segment], seen: Sequence[Columns], top: float
+        self, loop: Loop, edge: int, segments: Sequence[Segment], seen: Sequence[Columns], top: float
     ) -> list[tuple[int, Floats, Floats]]:
-        """An edge of the room's polygon cut where its wall ends in the open: (line or OPEN, from, to)."""
-        number, a, b = edge
+        """An edge of the room's polygon cut where its wall ends in the open: (line or OPEN, from, to).
+
+        Towards a corner with another wall it goes on over what may be hidden; towards the open it ends where it ends.
+        """
+        edges = loop.edges()
+        number, a, b = edges[edge]
         if number == OPEN:
-            return [edge]
+            return [edges[edge]]
+        cornered = [edges[k % len(edges)][0] != OPEN for k in (edge - 1, edge + 1)]
         line = self.lines[number]
         low, high = line.along(np.array([a, b]))  # the tangent runs along the edge: the room is on the left of both
-        cuts = [low]
+        cuts: list[float] = []
         for s in sorted((s for s in segments if s.line == number), key=lambda s: s.start):
             start, end = max(s.start, low), min(s.end, high)
             if start < end:
-                cuts += [] if cuts[-1] == low and self._goes_on(number, top, low, start) else [start]
+                cuts += [] if not cuts and cornered[0] and self._goes_on(number, top, low, start) else [start]
                 cuts += [end]
-        if len(cuts) > 1 and self._goes_on(number, top, cuts[-1], high):
-            cuts[-1] = high
-        inner = [a, *line.at(np.array([c for c in cuts if low < c < high])), b]
+        if cuts and cornered[1] and self._goes_on(number, top, cuts[-1], high):
+            cuts.pop()
+        inner = [a, *line.at(np.array([c for c in cuts if low + _NEAR < c < high - _NEAR])), b]
         return [
             (number if self._is_wall(number, p, q, seen[number]) else OPEN, p, q)
             for p, q in zip(inner[:-1], inner[1:], strict=True)
@@ -189,6 +215,11 @@ class WallFinder:
             width=float(np.hypot(*(b - a))),
             height=float(top - self.floor),
         )
+
+
+def _upright(line: PlanLine, places: Floats) -> Floats:
+    """The line's normal (M, 3), once for each place."""
+    return np.broadcast_to([line.normal[0], line.normal[1], 0.0], places.shape)
 
 
 def _runs(columns: Columns, goes_on: Callable[[float, float], bool]) -> list[NDArray[np.int_]]:

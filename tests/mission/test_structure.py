@@ -184,3 +184,26 @@ def test_without_a_floor_there_is_no_room() -> None:
 def test_without_a_wall_there_is_no_room() -> None:
     with pytest.raises(MissionError, match="no wall"):
         find_structure(scanned([box((-30, 30), (-30, 30), (-0.2, 0)), TABLE], (2, 1.5)))
+
+
+@pytest.mark.parametrize(
+    "piece",
+    [
+        pytest.param(box((0, 6), (2.8, 3.0), (2.3, 2.6)), id="beam"),
+        pytest.param(box((1, 3), (3.65, 4), (1.4, 2.6)), id="hanging cupboard"),
+        pytest.param(box((0, 6), (3.92, 4), (2.5, 2.6)), id="moulding"),
+    ],
+)
+def test_what_hangs_from_the_ceiling_is_no_wall(piece: Box) -> None:
+    structure = find_structure(scanned([*plain_room(), piece], (2, 1.5), (4.4, 2.2)))
+
+    assert corners(structure) == RECTANGLE
+
+
+def test_a_leaf_as_high_as_a_roofless_wall_is_no_wall() -> None:
+    a = np.deg2rad(20)
+    leaf = Box((2 + 0.45 * np.cos(a), -0.02 + 0.45 * np.sin(a), 1.05), (0.9, 0.04, 2.1), a)
+    room = [*with_doorway(plain_room(height=2.1, ceiling=False), 1, 2.0, 2.9, 2.1), leaf]
+    structure = find_structure(scanned(room, (3.4, 2.3), (4.6, 1.8)))
+
+    assert corners(structure) == RECTANGLE
