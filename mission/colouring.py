@@ -15,7 +15,6 @@ from mission.rigid import Pose, inverted
 
 if TYPE_CHECKING:
     from sim.camera import Photo
-
     from sim.scanner import Scan
 
 Mask = NDArray[np.bool_]

@@ -1,6 +1,6 @@
 """Registration: point-to-plane ICP of a scan against the map of the scans before it, from the odometry guess.
 
-Written with numpy and a k-d tree rather than Open3D, whose parallel sums differ in the last bits from run to run.
+Written with numpy and a k-d tree rather than Open3D, whose parallel sums on two cores give other last bits every run.
 """
 
 from __future__ import annotations
