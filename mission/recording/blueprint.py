@@ -16,6 +16,7 @@ from mission.recording import entities
 class WallTab:
     """What the tab of a wall needs to know."""
 
+    room: int
     name: str
     """ "1.2" for the second wall of room 1."""
     views: int
@@ -33,6 +34,8 @@ class Outlook:
     """(3,) in the world [m]."""
     target: NDArray[np.float64]
     """(3,) in the world [m]."""
+    seen: NDArray[np.float64]
+    """(N, 3) what is to be in view [m]."""
 
 
 _BARS = rrb.VisualBounds2D(x_range=(-10, 110), y_range=(-10, 120))
@@ -43,7 +46,7 @@ def outlook(points: NDArray[np.float64]) -> Outlook:
     low, high = points.min(axis=0), points.max(axis=0)
     target = (low + high) / 2
     size = max(float(np.linalg.norm(high[:2] - low[:2])), 4.0)
-    return Outlook(target + size * np.array([-0.22, -0.48, 0.72]), target)
+    return Outlook(target + size * np.array([-0.22, -0.48, 0.72]), target, points)
 
 
 def blueprint(view: Outlook, walls: Sequence[WallTab] = ()) -> rrb.Blueprint:
@@ -115,7 +118,7 @@ def _view(root: str, number: int) -> rrb.Container:
 def _photograph(wall: WallTab) -> rrb.View:
     return rrb.Spatial2DView(
         origin=f"{entities.SHOTS}/{wall.name}",
-        contents=["$origin/**", f"{entities.DOORS}/**"],
+        contents=["$origin/**", f"{entities.DOORS}/{wall.name}/**"],
         name="Photograph with the doors",
     )
 

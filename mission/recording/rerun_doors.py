@@ -64,6 +64,7 @@ class Doors:
         self._base_from_scanner: Pose = np.eye(4)
         self._fresh: list[Shot] = []
         self._shots: list[Shot] = []
+        self._count = 0
 
     @singledispatchmethod
     def draw(self, event: Event) -> None:
@@ -97,20 +98,26 @@ class Doors:
 
     @draw.register
     def _(self, event: DoorsEvaluated) -> None:
-        for number, evaluation in enumerate(event.doors):
-            self._draw_door(evaluation, colour=palette(number))
+        for evaluation in event.doors:
+            self._draw_door(event.room, evaluation, colour=palette(self._count))
+            self._count += 1
             if evaluation.true_name is not None:
                 self._draw_truth(evaluation.true_name, evaluation.true_leaf_corners_in_world)
-        if event.doors:
-            widest = max(event.doors, key=lambda evaluation: np.nan_to_num(evaluation.door.opening_angle))
-            self._show_best(entities.CAMERA, [widest])
+        self._show_doors(event)
+        self._shots = []
+
+    def _show_doors(self, event: DoorsEvaluated) -> None:
+        """The photograph of the widest open door, and for each wall that of its doors."""
+        if not event.doors:
+            return
+        widest = max(event.doors, key=lambda evaluation: np.nan_to_num(evaluation.door.opening_angle))
+        self._show_best(entities.CAMERA, [widest])
         for wall in sorted({evaluation.wall for evaluation in event.doors}):
             entity = child(entities.SHOTS, entities.wall_name(event.room, wall))
             self._show_best(entity, [evaluation for evaluation in event.doors if evaluation.wall == wall])
-        self._shots = []
 
-    def _draw_door(self, evaluation: DoorEvaluation, *, colour: tuple[int, int, int]) -> None:
-        door = child(entities.DOORS, evaluation.door_id)
+    def _draw_door(self, room: int, evaluation: DoorEvaluation, *, colour: tuple[int, int, int]) -> None:
+        door = child(entities.DOORS, entities.wall_name(room, evaluation.wall), evaluation.door_id)
         leaves = evaluation.leaf_corners_in_world
         label = f"{evaluation.door_id}: {angle_label(evaluation)}"
         self._rec.log(
@@ -140,7 +147,7 @@ class Doors:
     def _show_best(self, entity: str, doors: Sequence[DoorEvaluation]) -> None:
         """Show the photograph that shows most of some doors."""
         corners = np.array([door.corners_in_world for door in doors])
-        if self._shots and len(corners):
+        if self._shots:
             self._show(entity, max(self._shots, key=lambda shot: shot.shown_area(corners)))
 
     def _show(self, entity: str, shot: Shot) -> None:

@@ -28,6 +28,15 @@ from mission.recording.sentences import level, sentence
 if TYPE_CHECKING:
     from sim.doors import DoorTruth
 
+ACTIVITY_COLOURS = {
+    "start": (120, 120, 120),
+    "scan": (60, 140, 210),
+    "plan": (150, 110, 200),
+    "drive": (230, 130, 50),
+    "detect": (70, 165, 90),
+    "end": (120, 120, 120),
+}
+DOOR_COLOURS = {"closed": (170, 80, 70), "semi-open": (210, 160, 50), "open": (70, 165, 90)}
 ACTIVITIES: dict[type[Event], str] = {
     MissionStarted: "start",
     Scanned: "scan",
@@ -68,6 +77,7 @@ class Plots:
     @_plot.register
     def _(self, event: MissionStarted) -> None:
         self._true_doors = event.true_doors
+        self._rec.log(entities.ACTIVITY, _lane(ACTIVITY_COLOURS), static=True)
         for door in event.true_doors:
             self._style_joint(door.name, JOINT_COLOUR)
         self._plot_joints({door.name: opening(door) for door in event.true_doors})
@@ -92,7 +102,9 @@ class Plots:
         for number, evaluation in enumerate(event.doors, start=len(self._evaluations) - len(event.doors)):
             if evaluation.true_name is not None:
                 self._style_joint(evaluation.true_name, palette(number))
-            self._rec.log(child(entities.DOOR_STATES, evaluation.door_id), rr.StateChange(state=evaluation.door.state))
+            lane = child(entities.DOOR_STATES, evaluation.door_id)
+            self._rec.log(lane, _lane(DOOR_COLOURS), static=True)
+            self._rec.log(lane, rr.StateChange(state=evaluation.door.state))
             self._rec.log(child(entities.TABLE, evaluation.door_id), _row(evaluation))
         self._plot_estimates()
 
@@ -136,6 +148,11 @@ class Plots:
             self._styled.add(entity)
             self._rec.log(entity, rr.SeriesLines(names=f"room {room}: {what}", widths=2.0), static=True)
         self._rec.log(entity, rr.Scalars(100.0 * coverage))
+
+
+def _lane(colours: dict[str, tuple[int, int, int]]) -> rr.StateConfiguration:
+    """Colours of the states of a lane."""
+    return rr.StateConfiguration(values=list(colours), labels=list(colours), colors=list(colours.values()))
 
 
 def _row(evaluation: DoorEvaluation) -> rr.AnyValues:

@@ -10,9 +10,9 @@ from typing import Self
 import numpy as np
 import rerun as rr
 
-from mission.events import DoorsDetected, Event, MissionStarted, Structured
+from mission.events import DoorsDetected, DoorsEvaluated, Event, MissionStarted, Structured
 from mission.recording import entities
-from mission.recording.blueprint import Outlook, WallTab, blueprint, outlook
+from mission.recording.blueprint import WallTab, blueprint, outlook
 from mission.recording.drawing import outline
 from mission.recording.rerun_doors import Doors
 from mission.recording.rerun_plans import Plans
@@ -35,7 +35,7 @@ class RerunSink:
         """Record into a file, which is overwritten."""
         self._path = path
         self._scan_number = 0
-        self._outlook = Outlook(np.array([-4.0, -6.0, 7.0]), np.zeros(3))
+        self._outlook = outlook(np.zeros((1, 3)))
         self._walls: list[WallTab] = []
         self._shown: tuple[WallTab, ...] = ()
         self._known_rooms: set[int] = set()
@@ -90,9 +90,11 @@ class RerunSink:
                 self._outlook = outlook(np.concatenate([outline(wall) for wall in event.structure.walls]))
                 self._send_layout(())
             case DoorsDetected():
-                walls = _wall_tabs(event)
-                self._walls += walls
-                self._send_layout(walls)
+                self._walls += _wall_tabs(event)
+            case DoorsEvaluated():
+                leaves = [leaf for door in event.doors for leaf in door.leaf_corners_in_world]
+                self._outlook = outlook(np.concatenate([self._outlook.seen, *leaves]))
+                self._send_layout([wall for wall in self._walls if wall.room == event.room])
 
     def _send_layout(self, walls: Sequence[WallTab]) -> None:
         self._shown = tuple(walls)
@@ -103,6 +105,7 @@ def _wall_tabs(event: DoorsDetected) -> list[WallTab]:
     """A tab a wall; each opens with the view that has the largest highlight."""
     return [
         WallTab(
+            room=event.room,
             name=entities.wall_name(event.room, number),
             views=len(result.views),
             first_view=int(np.argmax([h.regions.sum() for h in result.highlights])) if result.views else 0,

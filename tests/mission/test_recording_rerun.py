@@ -108,7 +108,7 @@ def test_whatever_changes_is_on_all_timelines(recording: Path) -> None:
         "/world/map/voxels",
         "/world/map/grid",
         "/world/walls/1/outlines",
-        "/world/doors/1.2-a/leaf",
+        "/world/doors/1.2/1.2-a/leaf",
         "/world/truth/doors/hall\\/door\\ 1",
         "/world/camera/photo",
         "/world/shots/1.2/photo",
@@ -156,9 +156,9 @@ def test_estimates_and_joints_are_those_of_the_event(recording: Path) -> None:
 
 def test_a_door_is_drawn_where_it_was_found_and_labelled_with_its_joint(recording: Path) -> None:
     evaluation = event_of(DoorsEvaluated).doors[0]
-    (leaf,) = column(recording, "/world/doors/1.2-a/leaf", "LineStrips3D:strips")
+    (leaf,) = column(recording, "/world/doors/1.2/1.2-a/leaf", "LineStrips3D:strips")
     np.testing.assert_allclose(leaf[0][:4], evaluation.leaf_corners_in_world[0], atol=1e-6)
-    assert column(recording, "/world/doors/1.2-a/label", "Points3D:labels") == [["1.2-a: 30.0 deg (joint 31.0)"]]
+    assert column(recording, "/world/doors/1.2/1.2-a/label", "Points3D:labels") == [["1.2-a: 30.0 deg (joint 31.0)"]]
 
 
 def test_the_robot_moves_through_every_pose_of_its_way(recording: Path) -> None:
