@@ -22,11 +22,13 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from mission.grid import Footprint, OccupancyGrid
 from mission.navigation import NavigationParameters, RoadMap, road_map
-from mission.survey import Preview, StructuralVoxels, Survey, SurveyParameters
+from mission.survey import NOTHING, Preview, StructuralVoxels, Survey, SurveyParameters
 
 COVERAGE, NO_GAIN, SCAN_LIMIT = "coverage", "no gain", "scan limit"
 NO_OVERLAP, UNREACHABLE = "no overlap", "nothing reachable"
 """Reasons to stop."""
+NO_WAY = "no way there"
+"""Reason against a candidate."""
 
 
 class PlanningParameters(BaseModel):
@@ -37,6 +39,7 @@ class PlanningParameters(BaseModel):
     max_scans: int = Field(default=6, ge=1, le=100, description="Scans of a room, the first included")
     target_coverage: float = Field(default=0.98, gt=0.0, le=1.0, description="Share of the structure's area")
     min_value: float = Field(default=0.5, ge=0.0, le=100.0, description="A scan must be worth so much [m2]")
+    min_separation: float = Field(default=0.5, ge=0.0, le=5.0, description="From the places scanned before [m]")
     min_overlap: float = Field(default=0.3, ge=0.0, le=1.0, description="Known share of what is seen, for registration")
     travel_cost: float = Field(default=0.05, ge=0.0, le=5.0, description="Decay of the value with the way [1/m]")
     quality_weight: float = Field(default=0.15, ge=0.0, le=10.0, description="Of wall area seen only obliquely so far")
@@ -97,6 +100,7 @@ def plan_next_scan(
     scanners_in_world: NDArray[np.float64],
     floor_height: float,
     room: NDArray[np.float64] | None = None,
+    failed_in_world: NDArray[np.float64] | None = None,
     footprint: Footprint | None = None,
     navigation: NavigationParameters | None = None,
     parameters: PlanningParameters | None = None,
@@ -112,6 +116,7 @@ def plan_next_scan(
         scanners_in_world: (S, 3) where was scanned so far [m].
         floor_height: World z of the floor [m].
         room: (P, 2) polygon that candidates must lie in; anywhere by default.
+        failed_in_world: (F, 3) where scans were taken that could not be used [m]: they count, and are not repeated.
     """
     parameters, footprint = parameters or PlanningParameters(), footprint or Footprint()
     roads = road_map(grid, world_from_base, footprint=footprint, parameters=navigation, within=room)
@@ -126,11 +131,12 @@ def plan_next_scan(
     mount = base_from_scanner[:3, 3] + np.array([0.0, 0.0, floor_height])
     offered = np.arange(1, len(roads.points))
     offered = offered[:: -(-len(offered) // parameters.max_candidates) or 1]
-    candidates = tuple(_judged(survey, roads, int(point), mount, parameters) for point in offered)
-    stop_reason = _stop_reason(
-        candidates, coverage=survey.coverage, scans=len(scanners_in_world), parameters=parameters
-    )
-    chosen = None if stop_reason else int(np.argmax([candidate.score for candidate in candidates]))
+    tried = [scanners_in_world] if failed_in_world is None else [scanners_in_world, failed_in_world]
+    judge = _Judge(survey, np.concatenate(tried), mount, parameters)
+    candidates = tuple(judge.candidate(roads, int(point)) for point in offered)
+    best = max(range(len(candidates)), key=lambda k: candidates[k].score, default=None)
+    stop_reason = judge.stop_reason(candidates, best)
+    chosen = best if stop_reason is None else None
     return Plan(
         candidates=candidates,
         chosen=chosen,
@@ -141,64 +147,72 @@ def plan_next_scan(
 
 
 def worth(candidate: ScanCandidate, parameters: PlanningParameters, *, covered: bool = False) -> float:
-    """Value of a scan from a candidate [m2], before the way there; without the gain where that is no longer wanted."""
+    """Value of a scan from a candidate [m2], before the way there; a covered room is no longer scanned for the gain."""
     extras = parameters.quality_weight * candidate.quality + parameters.doorway_weight * candidate.doorway
     return extras if covered else candidate.gain + extras
 
 
-def _judged(
-    survey: Survey, roads: RoadMap, point: int, mount: NDArray[np.float64], parameters: PlanningParameters
-) -> ScanCandidate:
-    """What a scan from a point of the road map would bring, the scanner at (3,) `mount` in a base on z = 0."""
-    position, travel = roads.points[point], float(roads.metres[point])
-    if not np.isfinite(travel):
-        nothing = Preview(gain=0.0, quality=0.0, doorway=0.0, overlap=0.0)
-        return _candidate(position, nothing, heading=0.0, travel=travel, reason="no way there")
-    way = position - roads.points[roads.before[point]]
-    cos, sin = way / max(float(np.hypot(*way)), 1e-9)
-    offset = np.array([cos * mount[0] - sin * mount[1], sin * mount[0] + cos * mount[1], mount[2]])
-    preview = survey.preview(np.append(position, 0.0) + offset)
-    too_new = preview.overlap < parameters.min_overlap
-    candidate = _candidate(
-        position,
-        preview,
-        heading=float(np.arctan2(sin, cos)),
-        travel=travel,
-        reason=f"overlap under {parameters.min_overlap:g}" if too_new else None,
-    )
-    if too_new:
-        return candidate
-    return replace(candidate, score=worth(candidate, parameters) * float(np.exp(-parameters.travel_cost * travel)))
+class _Judge:
+    """Puts candidates and the room as a whole to the test."""
 
+    def __init__(
+        self,
+        survey: Survey,
+        tried: NDArray[np.float64],
+        mount: NDArray[np.float64],
+        parameters: PlanningParameters,
+    ) -> None:
+        """`tried` are the places scanned from (S, >=2) [m]; `mount` is where the scanner is on a robot at the origin, facing along x, on the room's floor: (3,) [m]."""
+        self._survey, self._tried = survey, tried
+        self._mount, self._parameters = mount, parameters
+        self._little_overlap = f"overlap under {parameters.min_overlap:g}"
+        self._covered = survey.coverage >= parameters.target_coverage
 
-def _candidate(
-    position: NDArray[np.float64], preview: Preview, *, heading: float, travel: float, reason: str | None
-) -> ScanCandidate:
-    return ScanCandidate(
-        position=position,
-        heading=heading,
-        gain=preview.gain,
-        quality=preview.quality,
-        doorway=preview.doorway,
-        overlap=preview.overlap,
-        travel=travel,
-        score=0.0,
-        reason=reason,
-    )
+    def candidate(self, roads: RoadMap, point: int) -> ScanCandidate:
+        """What a scan from a point of the road map would bring."""
+        parameters, position, travel = self._parameters, roads.points[point], float(roads.metres[point])
+        way = position - roads.points[max(roads.before[point], 0)]
+        cos, sin = way / np.hypot(*way) if way.any() else (1.0, 0.0)
+        x, y, z = self._mount
+        scanner = np.array([position[0] + cos * x - sin * y, position[1] + sin * x + cos * y, z])
+        preview = self._survey.preview(scanner) if np.isfinite(travel) else NOTHING
+        reason = self._objection(preview, scanner, travel)
+        candidate = ScanCandidate(
+            position=position,
+            heading=float(np.arctan2(sin, cos)),
+            gain=preview.gain,
+            quality=preview.quality,
+            doorway=preview.doorway,
+            overlap=preview.overlap,
+            travel=travel,
+            score=0.0,
+            reason=reason,
+        )
+        if reason is not None:
+            return candidate
+        value = worth(candidate, parameters, covered=self._covered)
+        return replace(candidate, score=value * float(np.exp(-parameters.travel_cost * travel)))
 
+    def _objection(self, preview: Preview, scanner: NDArray[np.float64], travel: float) -> str | None:
+        """Why a candidate is out of the question."""
+        if not np.isfinite(travel):
+            return NO_WAY
+        distance = np.hypot(*(self._tried[:, :2] - scanner[:2]).T)
+        if distance.min(initial=np.inf) < self._parameters.min_separation:
+            return f"scanned from {distance.min():.2f} m beside it"
+        if preview.overlap < self._parameters.min_overlap:
+            return self._little_overlap
+        return None
 
-def _stop_reason(
-    candidates: Sequence[ScanCandidate], *, coverage: float, scans: int, parameters: PlanningParameters
-) -> str | None:
-    """Why to stop; None to go on. Doorways and oblique walls can keep a covered room going, small gains cannot."""
-    possible = [candidate for candidate in candidates if candidate.reason is None]
-    covered = coverage >= parameters.target_coverage
-    worthwhile = any(worth(candidate, parameters, covered=covered) >= parameters.min_value for candidate in possible)
-    if covered and not worthwhile:
-        return COVERAGE
-    if scans >= parameters.max_scans:
-        return SCAN_LIMIT
-    if not possible:
-        reachable = any(np.isfinite(candidate.travel) for candidate in candidates)
-        return NO_OVERLAP if reachable else UNREACHABLE
-    return None if worthwhile else NO_GAIN
+    def stop_reason(self, candidates: Sequence[ScanCandidate], best: int | None) -> str | None:
+        """Why to stop; None to go on."""
+        possible = best is not None and candidates[best].reason is None
+        if best is not None and possible:
+            value = worth(candidates[best], self._parameters, covered=self._covered)
+            if value >= self._parameters.min_value:
+                return SCAN_LIMIT if len(self._tried) >= self._parameters.max_scans else None
+        if self._covered:
+            return COVERAGE
+        if possible:
+            return NO_GAIN
+        return NO_OVERLAP if any(c.reason == self._little_overlap for c in candidates) else UNREACHABLE

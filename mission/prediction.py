@@ -16,8 +16,12 @@ from pydantic import BaseModel, ConfigDict, Field
 
 _LEVELS = 4
 """Depth maps, each with bins twice as wide as the last one's."""
-_TOUCH = 0.3
-"""What is hit within this distance of a cell does not hide it [m]: the wall it belongs to, a skirting, a radiator."""
+_TOUCH = 0.15
+"""What is hit within this distance of a cell does not hide it [m]: a cube and a half, for the edges of both."""
+_WALL_TOUCH = 0.3
+"""Likewise for the sides of the room [m]: polygon and walls may differ by centimetres, met at a grazing angle."""
+_DIAGONAL = 1.5
+"""Neighbouring cubes of a surface lie up to this many sides apart: a bin must not be narrower, or it leaves holes."""
 
 
 class ScannerView(BaseModel):
@@ -112,7 +116,7 @@ def _behind_cubes(cells: NDArray[np.float64], cubes: NDArray[np.float64], view: 
     """(M,) which (M, 3) cells have one of (K, 3) cubes in front, all as offsets from the scanner."""
     azimuth, polar, depth, level_distance = _spherical(cubes)
     finest = np.radians(view.bin_deg)
-    level = np.ceil(np.log2(view.cube / np.maximum(level_distance * finest, 1e-6)))
+    level = np.ceil(np.log2(_DIAGONAL * view.cube / np.maximum(level_distance * finest, 1e-6)))
     level = np.clip(level, 0, _LEVELS - 1).astype(np.intp)
     cell_azimuth, cell_polar, distance, _ = _spherical(cells)
     hidden = np.zeros(len(cells), dtype=np.bool_)
@@ -153,6 +157,6 @@ def _behind_walls(
     with np.errstate(divide="ignore", invalid="ignore"):  # parallel: no crossing
         t = (first[:, 0] * side[:, 1] - first[:, 1] * side[:, 0]) / cross
         s = (first[:, 0] * ray[:, 1, None] - first[:, 1] * ray[:, 0, None]) / cross
-    before = 1 - _TOUCH / np.maximum(np.hypot(ray[:, 0], ray[:, 1]), 1e-9)
+    before = 1 - _WALL_TOUCH / np.maximum(np.hypot(ray[:, 0], ray[:, 1]), 1e-9)
     hides: NDArray[np.bool_] = (s >= 0) & (s <= 1) & (t > 0) & (t < before[:, None])
     return np.any(hides, axis=1)

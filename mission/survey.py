@@ -60,6 +60,9 @@ class Preview:
     overlap: float
 
 
+NOTHING = Preview(gain=0.0, quality=0.0, doorway=0.0, overlap=0.0)
+
+
 class Survey:
     """What the scans so far have seen of the structure, against which candidates are judged."""
 

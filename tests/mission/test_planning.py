@@ -80,6 +80,7 @@ def plan(
     scanners: list[tuple[float, float]],
     points: NDArray[np.float64] | None = None,
     grid: OccupancyGrid | None = None,
+    failed: NDArray[np.float64] | None = None,
     parameters: PlanningParameters | None = None,
 ) -> Plan:
     """Plan from the last of the places that were scanned from."""
@@ -92,6 +93,7 @@ def plan(
         scanners_in_world=np.array([(x, y, SCANNER) for x, y in scanners]),
         floor_height=0.0,
         room=ROOM,
+        failed_in_world=failed,
         footprint=Footprint(length=1.0, width=0.55),
         parameters=parameters,
     )
@@ -274,7 +276,7 @@ def test_a_robot_that_is_shut_in_has_nothing_to_reach() -> None:
     voxels, points, _ = screened_room()
     pen = free_grid(x=(0.5, 1.9), y=(2.3, 3.7))  # room to turn about its centre only
     shut_in = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=pen)
-    assert shut_in.stop_reason in ("nothing reachable", "no gain")
+    assert shut_in.stop_reason == "nothing reachable"
     wall = free_grid()
     c = wall.centres()
     closed = replace(wall, cells=np.where(abs(c[..., 0] - 2.2) < 0.1, np.uint8(Cell.OCCUPIED), wall.cells))
@@ -291,6 +293,19 @@ def test_a_scan_must_see_enough_of_what_is_known() -> None:
     assert any(c.reason == "overlap under 1" and c.score == 0 for c in stopped.candidates)
     for c in stopped.candidates:
         assert c.reason is not None or c.overlap == 1.0
+
+
+def test_no_second_scan_is_taken_beside_an_earlier_one_even_a_failed_one() -> None:
+    voxels, points, grid = screened_room()
+    first = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid)
+    assert first.chosen is not None
+    failed = np.append(first.candidates[first.chosen].position, SCANNER)
+    second = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid, failed=failed[None])
+    assert second.chosen is not None
+    assert np.hypot(*(second.candidates[second.chosen].position - failed[:2])) >= 0.5
+    limit = PlanningParameters(max_scans=2)
+    stopped = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid, failed=failed[None], parameters=limit)
+    assert stopped.stop_reason == "scan limit"
 
 
 def survey_of(voxels: Voxels, scanners: list[tuple[float, float]]) -> Survey:
