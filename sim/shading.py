@@ -16,6 +16,8 @@ Image = NDArray[np.floating]
 
 _SHADOW_BIAS = 3e-3
 """Depth by which something must be nearer to the flash to throw a shadow, relative."""
+_DOUBT = np.float32(0.1)
+"""Weight of the size of a step, beside its change, in the choice between two."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,10 +125,20 @@ def _gradient(inverse_depth: Image, window: Window) -> tuple[Image, Image, Image
 
 
 def _slope(picture: Image, axis: int) -> Image:
-    """(H, W) change per pixel; of the steps on both sides the smaller one, which does not cross an edge."""
-    steps = np.diff(picture, axis=axis)
-    first, last = (steps[:1], steps[-1:]) if axis == 0 else (steps[:, :1], steps[:, -1:])
-    before = np.concatenate([first, steps], axis=axis)
-    after = np.concatenate([steps, last], axis=axis)
-    closer = (np.abs(after) < np.abs(before)).view(np.uint8)
-    return np.asarray(cv2.copyTo(after, closer, before))
+    """(H, W) change per pixel, of the steps before and after each pixel the one on the pixel's own surface.
+
+    That is the step that goes on unchanged to the pixel beyond; where neither does, the smaller one.
+    """
+    widths = [(0, 0), (0, 0)]
+    widths[axis] = (2, 2)
+    steps = np.pad(np.diff(picture, axis=axis), widths, mode="edge")
+    doubt = np.abs(np.diff(steps, axis=axis))
+    size = picture.shape[axis]
+    before, after = _part(steps, axis, 1, size), _part(steps, axis, 2, size)
+    doubt_before = _part(doubt, axis, 0, size) + np.abs(before) * _DOUBT
+    doubt_after = _part(doubt, axis, 2, size) + np.abs(after) * _DOUBT
+    return np.asarray(cv2.copyTo(after, (doubt_after < doubt_before).view(np.uint8), before.copy()))
+
+
+def _part(picture: Image, axis: int, start: int, size: int) -> Image:
+    return picture[start : start + size] if axis == 0 else picture[:, start : start + size]

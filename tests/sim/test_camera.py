@@ -154,6 +154,15 @@ def test_without_something_in_between_nothing_is_in_shadow(world, renderer_of):
     assert floor.min() > 0.5 * floor.max()
 
 
+def test_a_corner_has_no_seam_of_light(world, renderer_of):
+    # Wall and ceiling meet at (3, y, 1.2): nothing there is brighter than the surfaces on both sides of it.
+    ceiling = '<geom type="box" size="9 9 .1" pos="0 0 1.3" material="matt"/>'
+    photo = photograph(renderer_of, world(wall(3) + ceiling, MATT))[0]
+    _, v = map(int, project(photo, np.array([3.0, 0, 1.2])))
+    across = photo.image[v - 6 : v + 6, 20:160, 0].astype(int)
+    assert (across[4:9].max(axis=0) <= np.maximum(across[0], across[-1]) + 2).all()
+
+
 def test_ambient_light_fills_the_shadow(world, renderer_of):
     post = '<geom type="box" size=".005 .05 2" pos="1.005 0 0" material="matt"/>'
     photo = photograph(renderer_of, world(post + wall(2), MATT), MEDIUM.model_copy(update={"ambient": 1.0}))[0]
