@@ -42,7 +42,7 @@ class Scene:
     edges: Edges
     wall: Mask
     face: Mask
-    """(H, W) where some beam ended on the wall's face, or on what lies flat on it."""
+    """(H, W) where some view shows the wall's face, or what lies flat on it."""
     floor_row: int
     """First row below the floor."""
     lowest_row: int
@@ -134,15 +134,13 @@ def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]
     return wall, visible, passed
 
 
-def surroundings(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> NDArray[np.float64]:
+def surroundings(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
     """(N, 3) share of the visible strips outside the left, top and right sides that lies in the wall's plane.
 
     A rectangle inside an open doorway, between the jamb and the edge of the leaf, has no wall on one side. 1 where the
     strip is hidden or beyond the image.
     """
-    depth = scene.merged.depth
-    leaf = scene.edges.sloped & (np.abs(np.nan_to_num(depth, nan=np.inf)) < parameters.slab_face)
-    plane = scene.sums(scene.face & ~leaf)
+    plane = scene.sums(scene.face)
     visible = scene.sums((scene.seen == Visibility.DATA) | (scene.seen == Visibility.THROUGH))
     result = np.ones((len(boxes), 3))
     for i, strip in enumerate(strips(boxes, scene, outside=True)):

@@ -9,6 +9,7 @@ from time import perf_counter
 import numpy as np
 
 from detector.doors import doorway_rectangles, find_doors
+from detector.edges import wall_face
 from detector.highlights import find_highlights
 from detector.illumination import equalised, without_falloff
 from detector.leaves import describe_door, join_leaves
@@ -54,11 +55,10 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         views = [orthoimage(p, wall, g, parameters) for p, g in zip(points, gaps, strict=True)]
         passed = np.zeros(shape, bool)
         blocked = np.zeros(shape, bool)
-        face = np.zeros(shape, bool)
+        face = np.any([wall_face(view, parameters) for view in views], axis=0) if views else np.zeros(shape, bool)
         for p, g in zip(points, gaps, strict=True):
             passed |= mark(p.passed, wall, g, parameters)
             blocked |= mark(p.blocked, wall, parameters.max_gap_px, parameters)
-            face |= mark(p.slab[np.abs(p.slab[:, 2]) < parameters.slab_face, :2], wall, g, parameters)
     with clock("highlights"):
         even = even_light(views, points, wall.height, parameters)
         highlights = [find_highlights(i, p.camera, wall.height, parameters) for i, p in zip(even, points, strict=True)]

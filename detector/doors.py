@@ -52,7 +52,7 @@ def find_doors(
 
     Args:
         seen: (H, W) `Visibility`.
-        face: (H, W) where some beam ended on the wall's face.
+        face: (H, W) where some view shows the wall's face.
         plan: Height of the wall, and of the floor along v [m].
 
     Returns:
@@ -86,7 +86,7 @@ def judge(
         return ()
     support, feet = side_support(boxes, scene, parameters)
     wall, visible, through = inner_shares(boxes, scene)
-    around = surroundings(boxes, scene, parameters)
+    around = surroundings(boxes, scene)
     wall = np.where(_stand_alone(boxes, support, feet, scene), 0.0, wall)
     reasons = np.full(len(boxes), None, object)
     checks = (

@@ -23,7 +23,7 @@ GRADIENT_STEPS = 1000
 """Grey values per unit of gradient for Otsu's histogram; stronger gradients than 0.255 count as that."""
 CREASE_PX = 6
 """Half length over which a change of slope is measured."""
-SLOPE_NOISE = 4.0
+SLOPE_NOISE = 8.0
 """How much less a step counts on a surface that slopes by one: the gaps between samples become steps there."""
 FLAT = 0.1
 """Slope along u up to which a surface counts as parallel to the wall: 6 deg."""
@@ -43,8 +43,6 @@ class Edges:
     """Those of J'_CD that can lie on a vertical side."""
     level: Mask
     """Those that can lie on a horizontal side."""
-    sloped: Mask
-    """Where the surface is not parallel to the wall, as the face of a half-open leaf."""
 
 
 def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) -> Edges:
@@ -60,7 +58,7 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
     relief = depth_edges(merged.depth, seen, merged.pixel_size, parameters)
     upright = (colour & across) | (relief.edges & relief.across)
     level = (colour & ~across) | (relief.edges & ~relief.across)
-    return Edges(colour, relief.edges, upright, level, relief.sloped)
+    return Edges(colour, relief.edges, upright, level)
 
 
 def colour_derivatives(merged: Orthoimage) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -107,8 +105,6 @@ class Relief:
     """J'_D."""
     across: Mask
     """True where the depth changes along the columns rather than down the rows."""
-    sloped: Mask
-    """True where it changes steadily along the columns."""
 
 
 def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, parameters: DetectorParameters) -> Relief:
@@ -121,7 +117,7 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
     known = np.where(through, np.float32(-parameters.slab_behind), depth)
     filled = nearest(known, data | through)
     if not (data | through).any():
-        return Relief(*(np.zeros_like(data) for _ in range(3)))
+        return Relief(*(np.zeros_like(data) for _ in range(2)))
     dx, dy = _derivatives(filled, ALONG_PX)
     slope = _local_slope(dx)
     # the face of a half-open leaf slopes, and has no edges; its noise grows with the slope times the sample spacing
@@ -136,10 +132,21 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
         L2gradient=True,
     )
     steps = found > 0
-    creases_x, creases_y = (_creases(filled, axis, steps) for axis in (1, 0))
+    creases = _creases(filled, steps)
     near_data = cv2.dilate(data.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
-    across = np.where(steps, np.abs(dx) >= np.abs(dy), creases_x)
-    return Relief((steps | creases_x | creases_y) & near_data, across, np.abs(slope) > FLAT * pixel_size)
+    across = np.where(steps, np.abs(dx) >= np.abs(dy), creases)
+    return Relief((steps | creases) & near_data, across)
+
+
+def wall_face(view: Orthoimage, parameters: DetectorParameters) -> Mask:
+    """(H, W) where one view shows the wall's face, or what lies flat on it: near the plane and parallel to it.
+
+    In the merged image the leaf of a wide open door hides wall that another view saw.
+    """
+    data = np.isfinite(view.depth)
+    dx, _ = _derivatives(nearest(view.depth, data), ALONG_PX)
+    flat = np.abs(_local_slope(dx)) <= FLAT * view.pixel_size
+    return data & flat & (np.abs(np.where(data, view.depth, 0)) < parameters.slab_face)
 
 
 def _local_slope(dx: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -151,15 +158,13 @@ def _local_slope(dx: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.repeat(coarse, every, axis=0)[: len(dx)]
 
 
-def _creases(depth: NDArray[np.float32], axis: int, steps: Mask) -> Mask:
-    """(H, W) True on the ridge of the change of slope along an axis (1: along the columns), away from steps."""
-    size = (1, 3 * ALONG_PX) if axis == 1 else (3 * ALONG_PX, 1)
-    kernel = np.zeros(2 * CREASE_PX + 1, np.float32)
-    kernel[[0, CREASE_PX, -1]] = -0.5, 1.0, -0.5
-    kernel = cv2.blur(kernel[None], (3, 1), borderType=cv2.BORDER_CONSTANT)
-    shape = kernel if axis == 1 else kernel.T
-    bend = np.abs(cv2.filter2D(cv2.blur(depth, size), cv2.CV_32F, shape, borderType=cv2.BORDER_REPLICATE))
-    ridge = cv2.dilate(bend, np.ones((1, 5) if axis == 1 else (5, 1), np.uint8))
-    reach = (3 * ALONG_PX, 2 * CREASE_PX + 3)
-    near_step = cv2.dilate(steps.astype(np.uint8), np.ones(reach if axis == 1 else reach[::-1], np.uint8)) > 0
+def _creases(depth: NDArray[np.float32], steps: Mask) -> Mask:
+    """(H, W) True on the upright ridges of the change of slope, away from steps: the hinge of a half-open leaf."""
+    kernel = np.zeros((1, 2 * CREASE_PX + 1), np.float32)
+    kernel[0, [0, CREASE_PX, -1]] = -0.5, 1.0, -0.5
+    kernel = cv2.blur(kernel, (3, 1), borderType=cv2.BORDER_CONSTANT)
+    smooth = cv2.blur(depth, (1, 3 * ALONG_PX))
+    bend = np.abs(cv2.filter2D(smooth, cv2.CV_32F, kernel, borderType=cv2.BORDER_REPLICATE))
+    ridge = cv2.dilate(bend, np.ones((1, 5), np.uint8))
+    near_step = cv2.dilate(steps.astype(np.uint8), np.ones((3 * ALONG_PX, 2 * CREASE_PX - 1), np.uint8)) > 0
     return (bend > CREASE) & (bend == ridge) & ~near_step
