@@ -121,6 +121,8 @@ def label_colours(labels: NDArray[np.uint8]) -> NDArray[np.uint8]:
 def score_colours(scores: NDArray[np.floating]) -> NDArray[np.uint8]:
     """(N, 3) sRGB from dark violet for the lowest to yellow for the highest score; not finite counts as lowest."""
     scores = np.asarray(scores, float)
+    if len(scores) == 0:
+        return np.zeros((0, 3), np.uint8)
     finite = scores[np.isfinite(scores)]
     low, high = (finite.min(), finite.max()) if len(finite) else (0.0, 1.0)
     share = np.nan_to_num((scores - low) / max(high - low, 1e-12), nan=0.0, posinf=0.0, neginf=0.0)

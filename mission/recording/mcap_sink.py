@@ -84,7 +84,7 @@ class McapSink:
 
     def handle(self, event: Event) -> None:
         """Record one event; when this returns, the event is in the file and its chunk is closed."""
-        self._event = event
+        self._step = event.step
         self._now = EPOCH + event.time
         self._record(event)
         severity = LogLevel.Warning if level(event) == "WARN" else LogLevel.Info
@@ -194,7 +194,7 @@ class McapSink:
 
     def _log(self, topic: str, message: Any, *, when: int | None = None) -> None:
         """Write one message at the event's time, or at another one; later than the last in any case."""
-        time = (self._now if when is None else when) + PER_STEP * self._event.step
+        time = (self._now if when is None else when) + PER_STEP * self._step
         self._last_log_time = max(time, self._last_log_time + 1)
         self._channels[topic].log(message, log_time=self._last_log_time)
 

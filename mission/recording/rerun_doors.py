@@ -85,7 +85,8 @@ class Doors:
 
     @draw.register
     def _(self, event: Drove) -> None:
-        self._world_from_scanner = event.world_from_base[-1] @ self._base_from_scanner
+        for last in event.world_from_base[-1:]:
+            self._world_from_scanner = last @ self._base_from_scanner
 
     @draw.register
     def _(self, event: Registered) -> None:

@@ -85,7 +85,7 @@ class RerunSink:
                 place = event.world_from_base[:3, 3]
                 self._outlook = outlook(np.array([place - 3.0, place + 3.0]))
                 self._send_layout(())
-            case Structured() if event.room not in self._known_rooms:
+            case Structured() if event.structure.walls and event.room not in self._known_rooms:
                 self._known_rooms.add(event.room)
                 self._outlook = outlook(np.concatenate([outline(wall) for wall in event.structure.walls]))
                 self._send_layout(())

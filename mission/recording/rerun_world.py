@@ -163,7 +163,7 @@ class World:
 
     def _draw_lasers(self, event: Drove) -> None:
         """What the Hokuyos saw last."""
-        if not event.laser_scans:
+        if not event.laser_scans or not len(event.times):
             return
         points = []
         for scan in (scan for scan in event.laser_scans if scan.time == event.laser_scans[-1].time):

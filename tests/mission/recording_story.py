@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -120,3 +121,28 @@ def tell_drive(told: Story) -> None:
         true_world_from_base=true,
         true_door_angles=np.tile([made.JOINT, 0.0, 0.5], (26, 1)),
     )
+
+
+def bare_story() -> Story:
+    """A mission in which there is next to nothing: no true doors, no photographs, no way, no candidates, no walls."""
+    told = story()
+    structure = replace(made.structure(), walls=(), ceiling_height=None)
+    nothing = np.zeros(0)
+    changes: dict[type[events.Event], dict[str, Any]] = {
+        events.MissionStarted: {"true_doors": ()},
+        events.Photographed: {"photos": ()},
+        events.Coloured: {"view": made.view(np.random.default_rng(0), 0)},
+        events.Structured: {"structure": structure},
+        events.Planned: {"plan": replace(made.plan(last=True), candidates=())},
+        events.Drove: {
+            "times": nothing.astype(np.int64),
+            "world_from_base": np.zeros((0, 4, 4)),
+            "true_world_from_base": np.zeros((0, 4, 4)),
+            "true_door_angles": np.zeros((0, 0)),
+            "laser_scans": (),
+            "planned_path": np.zeros((0, 2)),
+        },
+        events.DoorsDetected: {"results": (), "ceiling_height": None},
+        events.DoorsEvaluated: {"doors": (), "missed": ()},
+    }
+    return Story(replace(event, **changes.get(type(event), {})) for event in told)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ from mission.recording.mcap_messages import xyzw
 from mission.recording.mcap_sink import EPOCH, McapSink
 from mission.recording.mcap_topics import TOPICS
 from tests.mission.recording_room import JOINT
-from tests.mission.recording_story import SECOND, story
+from tests.mission.recording_story import SECOND, bare_story, story
 
 RERUN = Path(sys.executable).with_name("rerun")
 
@@ -163,17 +162,10 @@ def test_configuration_and_scene_are_attached(recording: Path) -> None:
     assert metadata["versions"] == start.versions
 
 
-def test_an_empty_scan_is_an_empty_cloud(tmp_path: Path) -> None:
-    event = event_of(Coloured)
-    view, none = event.view, slice(0, 0)
-    empty = replace(
-        view,
-        points_in_world=view.points_in_world[none],
-        colours=view.colours[none],
-        coloured=view.coloured[none],
-    )
-    path = record(tmp_path / "empty.mcap", [replace(event, view=empty)])
+def test_a_mission_without_points_walls_doors_or_ways_is_recorded(tmp_path: Path) -> None:
+    path = record(tmp_path / "bare.mcap", bare_story())
     assert on_topic(path, "/scan/points")[0].data == b""
+    assert len(on_topic(path, "/mission/step")) == len(bare_story())
 
 
 @pytest.mark.parametrize(

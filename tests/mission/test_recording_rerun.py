@@ -20,7 +20,7 @@ from mission.recording.blueprint import outlook
 from mission.recording.rerun_sink import RerunSink
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
 from tests.mission.recording_room import ESTIMATE, JOINT, view
-from tests.mission.recording_story import story
+from tests.mission.recording_story import bare_story, story
 
 RERUN = Path(sys.executable).with_name("rerun")
 
@@ -190,10 +190,11 @@ def test_a_dense_scan_takes_less_than_two_megabytes(tmp_path: Path) -> None:
     assert many.stat().st_size - few.stat().st_size < 2_000_000  # 49,000 points of 5 cm on 115 m2, 16 bytes each
 
 
-def test_an_empty_scan_is_recorded(tmp_path: Path) -> None:
-    coloured = event_of(Coloured)
-    path = record(tmp_path / "empty.rrd", [replace(coloured, view=view(np.random.default_rng(1), 0))])
+def test_a_mission_without_points_walls_doors_or_ways_is_recorded(tmp_path: Path) -> None:
+    path = record(tmp_path / "bare.rrd", bare_story())
+    assert verified(path)
     assert points(path, "/world/scans/001/points")[0].size == 0
+    assert len(column(path, "/log", "TextLog:text")) == len(bare_story())
 
 
 def test_the_summary_quotes_every_door_and_every_miss(recording: Path) -> None:
