@@ -21,8 +21,8 @@ class WallTab:
     """ "1.2" for the second wall of room 1."""
     views: int
     """How many scans saw it."""
-    first_view: int
-    """The one to open."""
+    first_view: int | None
+    """The one to open; None where there is none."""
     has_doors: bool
 
 
@@ -142,13 +142,7 @@ def _results() -> rrb.Container:
         ),
         grid_columns=2,
     )
-    return rrb.Horizontal(
-        summary,
-        figures,
-        configuration,
-        column_shares=[4, 5, 2],
-        name="Results",
-    )
+    return rrb.Horizontal(summary, figures, configuration, column_shares=[4, 5, 2], name="Results")
 
 
 def _scatter() -> rrb.View:

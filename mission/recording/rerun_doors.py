@@ -127,11 +127,7 @@ class Doors:
         )
         self._rec.log(
             f"{door}/leaf",
-            rr.LineStrips3D(
-                [closed(leaf) for leaf in leaves],
-                colors=colour,
-                radii=0.02,
-            ),
+            rr.LineStrips3D([closed(leaf) for leaf in leaves], colors=colour, radii=0.02),
         )
         top = evaluation.corners_in_world[2:].mean(axis=0)
         self._rec.log(f"{door}/label", rr.Points3D([top], colors=colour, radii=0.02, labels=label, show_labels=True))

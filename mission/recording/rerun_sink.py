@@ -57,10 +57,12 @@ class RerunSink:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._shown != tuple(self._walls):
-            self._send_layout(self._walls)
-        self._rec.flush()
-        self._rec.disconnect()  # writes the footer
+        try:
+            if self._shown != tuple(self._walls):
+                self._send_layout(self._walls)
+            self._rec.flush()
+        finally:
+            self._rec.disconnect()  # writes the footer
 
     def handle(self, event: Event) -> None:
         """Record one event; when this returns, the event is in the file."""
@@ -108,7 +110,7 @@ def _wall_tabs(event: DoorsDetected) -> list[WallTab]:
             room=event.room,
             name=entities.wall_name(event.room, number),
             views=len(result.views),
-            first_view=int(np.argmax([h.regions.sum() for h in result.highlights])) if result.views else 0,
+            first_view=int(np.argmax([h.regions.sum() for h in result.highlights])) if result.views else None,
             has_doors=bool(result.doors),
         )
         for number, result in enumerate(event.results, start=1)

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from rerun.chunk import RrdReader
 
 from detector.result import Candidate, Rectangle
-from mission.events import Coloured, DoorsEvaluated, Drove, Event, MissionStarted
+from mission.events import Coloured, DoorsDetected, DoorsEvaluated, Drove, Event, MissionStarted
 from mission.recording.blueprint import outlook
+from mission.recording.rerun_doors import Shot
 from mission.recording.rerun_sink import RerunSink
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
 from tests.mission.recording_room import ESTIMATE, JOINT, view
@@ -202,6 +203,28 @@ def test_the_summary_quotes_every_door_and_every_miss(recording: Path) -> None:
     assert "| 1.2-a | single | semi-open | 0.90 x 2.10 | 30.0 ± 0.40 | 31.0 | -1.00 |" in text
     assert "missed: `lift`" in text
     assert "**completed**: one room; 2.0 m driven in 2 min 52 s" in text
+
+
+def test_a_wall_that_no_scan_saw_has_a_tab_without_views(tmp_path: Path) -> None:
+    detected = event_of(DoorsDetected)
+    unseen = replace(detected.results[1], views=(), highlights=(), view_numbers=())
+    events = [event_of(MissionStarted), replace(detected, results=(unseen,))]
+    assert verified(record(tmp_path / "unseen.rrd", events))
+
+
+@pytest.mark.parametrize(
+    ("left", "area"),
+    [
+        (-0.5, 1600),  # f w / z = 80 * 1 / 2 = 40 px wide and 40 px tall, whole in a picture 120 px wide
+        (1.0, 400),  # half of it is cut off: 800 px2 are shown, and count for half again
+        (9.0, 0),
+    ],
+)
+def test_a_photograph_counts_for_what_it_shows_of_a_door(left: float, area: float) -> None:
+    shot = Shot(b"", np.array([[80, 0, 60], [0, 80, 40], [0, 0, 1.0]]), 120, 80, np.eye(4), np.eye(4))
+    door = np.array([[left, -0.5, 2], [left + 1, -0.5, 2], [left + 1, 0.5, 2], [left, 0.5, 2]])
+    assert shot.shown_area(door[None]) == pytest.approx(area)
+    assert shot.shown_area(-door[None]) == 0  # behind the camera
 
 
 def judged(left: float, support: float, rejected_by: str | None) -> Candidate:
