@@ -119,12 +119,12 @@ def _gradient(inverse_depth: Image, window: Window) -> tuple[Image, Image, Image
 
     Over a plane 1/z is linear in the tangents (u, v): its slopes, and its value at u = v = 0, are these components.
     """
-    to_right = _slope(inverse_depth, axis=1) * np.float32(window.focal_x)
-    upward = _slope(inverse_depth, axis=0) * np.float32(window.focal_y)
+    to_right = slope_on_surface(inverse_depth, axis=1) * np.float32(window.focal_x)
+    upward = slope_on_surface(inverse_depth, axis=0) * np.float32(window.focal_y)
     return to_right, upward, inverse_depth - window.across * to_right - window.up * upward
 
 
-def _slope(picture: Image, axis: int) -> Image:
+def slope_on_surface(picture: Image, axis: int) -> Image:
     """(H, W) change per pixel, of the steps before and after each pixel the one on the pixel's own surface.
 
     That is the step that goes on unchanged to the pixel beyond; where neither does, the smaller one.

@@ -7,6 +7,7 @@ import pytest
 
 from sim.camera import FLASH, Camera, CameraParameters
 from sim.render.materials import linear_from_srgb, materials_of
+from sim.shading import slope_on_surface
 
 SMALL = CameraParameters(width=178, height=268, shots=7, noise=False, ambient=0)
 MEDIUM = SMALL.model_copy(update={"width": 356, "height": 536})
@@ -154,13 +155,13 @@ def test_without_something_in_between_nothing_is_in_shadow(world, renderer_of):
     assert floor.min() > 0.5 * floor.max()
 
 
-def test_a_corner_has_no_seam_of_light(world, renderer_of):
-    # Wall and ceiling meet at (3, y, 1.2): nothing there is brighter than the surfaces on both sides of it.
-    ceiling = '<geom type="box" size="9 9 .1" pos="0 0 1.3" material="matt"/>'
-    photo = photograph(renderer_of, world(wall(3) + ceiling, MATT))[0]
-    _, v = map(int, project(photo, np.array([3.0, 0, 1.2])))
-    across = photo.image[v - 6 : v + 6, 20:160, 0].astype(int)
-    assert (across[4:9].max(axis=0) <= np.maximum(across[0], across[-1]) + 2).all()
+@pytest.mark.parametrize("axis", [0, 1])
+def test_the_slope_of_a_surface_does_not_mix_with_that_of_the_next_one(axis):
+    # Down at 4 a pixel, up at 1 from pixel 9.6 on, then a cliff: every pixel has the slope of its own side.
+    line = np.concatenate([4 * (9.6 - np.arange(10.0)), np.arange(10, 20) - 9.6, 50 + np.arange(5.0)])
+    picture = np.tile(line, (6, 1)).astype(np.float32)
+    slope = slope_on_surface(picture, 1) if axis else slope_on_surface(picture.T, 0).T
+    assert np.allclose(slope, [-4] * 10 + [1] * 15, atol=1e-4)
 
 
 def test_ambient_light_fills_the_shadow(world, renderer_of):
