@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mission.following import Command, DrivingParameters, eased, follow_path, gap_to_body, remaining, restrained
 from mission.grid import Footprint
+from mission.localisation import readings_in_base
 
 if TYPE_CHECKING:
     from sim.hokuyo import LaserScan
@@ -43,7 +44,7 @@ class Drive:
     times: NDArray[np.int64]
     """(T,) simulated time of each pose [ns]."""
     world_from_base: NDArray[np.float64]
-    """(T, 4, 4) poses by odometry; the first is the start, the last the end of the leg."""
+    """(T, 4, 4) poses by odometry and localisation; the first is the start, the last the end of the leg."""
     laser_scans: tuple[LaserScan, ...]
     """Hokuyo scans on the way; the last of them were taken at the end."""
     world_from_base_at_laser: NDArray[np.float64]
@@ -66,6 +67,7 @@ def drive(
     world_from_odometry: NDArray[np.float64] | None = None,
     footprint: Footprint | None = None,
     parameters: DrivingParameters | None = None,
+    localise: Callable[[Sequence[LaserScan], NDArray[np.float64]], NDArray[np.float64]] | None = None,
     watch: Callable[[], None] = lambda: None,
 ) -> Drive:
     """Drive along a path until its end, or until the Hokuyos see the way blocked, or nothing moves any more.
@@ -75,21 +77,26 @@ def drive(
         path: (P, 2) way points in the world [m], the robot's position first.
         measure: Takes a reading of each Hokuyo now.
         world_from_odometry: (4, 4) correction that the last registration made to the odometry; none by default.
+        localise: Gives the pose (4, 4) that fits readings best, from them and the pose by odometry; asked now and then.
         watch: Called at each recorded pose, so that the caller can note what else it wants beside it.
     """
     parameters, footprint = parameters or DrivingParameters(), footprint or Footprint()
     correction = np.eye(4) if world_from_odometry is None else world_from_odometry
-    log = _Log(path, correction, watch, parameters.laser_every)
+    log = _Log(path, watch, parameters.laser_every)
     command = Command(0.0, 0.0, 1)
-    best, since = np.inf, robot.time
+    best, since, matched = np.inf, robot.time, robot.time
     while True:
-        pose, scans = log.note(robot, measure())
+        scans, pose = measure(), correction @ robot.odometry
+        if localise is not None and robot.time - matched >= parameters.match_every - 1e-9:
+            pose, matched = localise(scans, pose), robot.time
+            correction = pose @ np.linalg.inv(robot.odometry)
+        log.note(robot.time, pose, scans)
         if touched := robot.contacts():
             return log.closed("contact", f"touched {', '.join(sorted(touched))}")
         wanted = follow_path(path, pose, target=command.target, parameters=parameters)
         if wanted.target == len(path):
             return log.closed("arrived", "reached the end of the path")
-        obstacles = _in_base(scans)
+        obstacles = readings_in_base(scans)
         allowed = restrained(eased(wanted, command, parameters), obstacles, footprint=footprint, parameters=parameters)
         if allowed is None:
             return log.closed(
@@ -110,30 +117,26 @@ class _Log:
     def __init__(
         self,
         path: NDArray[np.float64],
-        world_from_odometry: NDArray[np.float64],
         watch: Callable[[], None],
         laser_every: float,
     ) -> None:
-        self._path, self._world_from_odometry = path, world_from_odometry
-        self._watch, self._laser_every = watch, laser_every
+        self._path, self._watch, self._laser_every = path, watch, laser_every
         self._times: list[int] = []
         self._poses: list[NDArray[np.float64]] = []
         self._kept: list[tuple[LaserScan, NDArray[np.float64]]] = []
         self._now: list[tuple[LaserScan, NDArray[np.float64]]] = []
         self._next_laser = -np.inf
 
-    def note(self, robot: DrivenRobot, scans: Sequence[LaserScan]) -> tuple[NDArray[np.float64], Sequence[LaserScan]]:
-        """Record this moment; give the pose and the scans back."""
-        pose = self._world_from_odometry @ robot.odometry
-        self._times.append(round(robot.time * 1e9))
+    def note(self, time: float, pose: NDArray[np.float64], scans: Sequence[LaserScan]) -> None:
+        """Record this moment."""
+        self._times.append(round(time * 1e9))
         self._poses.append(pose)
         self._now = [(scan, pose) for scan in scans]
-        if robot.time >= self._next_laser - 1e-9:
+        if time >= self._next_laser - 1e-9:
             self._kept += self._now
             self._now = []
-            self._next_laser = robot.time + self._laser_every
+            self._next_laser = time + self._laser_every
         self._watch()
-        return pose, scans
 
     def closed(self, outcome: Literal["arrived", "blocked", "stuck", "contact"], reason: str) -> Drive:
         """The record, its last laser scans those of the last moment."""
@@ -147,14 +150,3 @@ class _Log:
             outcome=outcome,
             reason=reason,
         )
-
-
-def _in_base(scans: Sequence[LaserScan]) -> NDArray[np.float64]:
-    """(N, 2) all readings in the base frame [m]."""
-    points = [np.empty((0, 2))]
-    for scan in scans:
-        hit = ~np.isnan(scan.ranges)
-        angles, ranges = scan.angles[hit], scan.ranges[hit].astype(np.float64)
-        in_laser = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=1)
-        points.append(in_laser @ scan.base_from_laser[:2, :2].T + scan.base_from_laser[:2, 3])
-    return np.concatenate(points)

@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from mission.following import DrivingParameters
 from mission.grid import Cell, Footprint, GridParameters, OccupancyGrid
+from mission.localisation import LocalisationParameters
 
 __all__ = ["Footprint", "NavigationParameters", "OccupancyGrid", "RoadMap", "plan_path", "road_map"]
 
@@ -47,6 +48,7 @@ class NavigationParameters(BaseModel):
     )
     grid: GridParameters = GridParameters()
     driving: DrivingParameters = DrivingParameters()
+    localisation: LocalisationParameters = LocalisationParameters()
 
 
 @dataclass(frozen=True, eq=False)

@@ -162,7 +162,14 @@ class _Judge:
         mount: NDArray[np.float64],
         parameters: PlanningParameters,
     ) -> None:
-        """`tried` are the places scanned from (S, >=2) [m]; `mount` is where the scanner is on a robot at the origin, facing along x, on the room's floor: (3,) [m]."""
+        """Take what all candidates have in common.
+
+        Args:
+            survey: Of the room.
+            tried: (S, 3) places scanned from, with or without success [m].
+            mount: (3,) of the scanner on a robot at the origin, facing along x, on the room's floor [m].
+            parameters: What a scan is worth.
+        """
         self._survey, self._tried = survey, tried
         self._mount, self._parameters = mount, parameters
         self._little_overlap = f"overlap under {parameters.min_overlap:g}"
