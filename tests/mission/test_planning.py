@@ -2,70 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from detector.room import VoxelLabel
 from mission.grid import Cell, Footprint, OccupancyGrid
 from mission.planning import Plan, PlanningParameters, plan_next_scan, worth
-from mission.prediction import Cells, Obstacles, ScannerView, find_obstacles, prospect
-from mission.survey import Survey, SurveyParameters
+from tests.mission.voxel_room import (
+    DEPTH,
+    OCCLUDED,
+    OPENING,
+    ROOM,
+    SCANNER,
+    WIDTH,
+    Voxels,
+    box_points,
+    free_grid,
+    room_voxels,
+)
 
-OCCUPIED, OCCLUDED, OPENING = VoxelLabel.OCCUPIED, VoxelLabel.OCCLUDED, VoxelLabel.OPENING
-WIDTH, DEPTH, HEIGHT, SCANNER = 6.0, 5.0, 2.6, 1.2
-ROOM = np.array([[0.0, 0.0], [WIDTH, 0.0], [WIDTH, DEPTH], [0.0, DEPTH]])
 MOUNT = np.eye(4)
 MOUNT[2, 3] = SCANNER
-NO_OBSTACLES = Obstacles(cubes=np.empty((0, 3)), walls=np.empty((0, 2)))
-
-
-@dataclass(frozen=True)
-class Voxels:
-    """The table that planning takes."""
-
-    cells_in_world: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    labels: NDArray[np.uint8]
-    areas: NDArray[np.float64]
-
-    def labelled(
-        self, label: VoxelLabel, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]
-    ) -> Voxels:
-        """The cells within a box get a label."""
-        low, high = np.array([x, y, z]).T
-        inside = ((self.cells_in_world >= low) & (self.cells_in_world <= high)).all(axis=1)
-        return replace(self, labels=np.where(inside, np.uint8(label), self.labels))
-
-
-def room_voxels() -> Voxels:
-    """All six sides of the room in cells of 0.2 m, all of them occupied."""
-    centres, normals = [], []
-    for axis, extent in enumerate((WIDTH, DEPTH, HEIGHT)):
-        others = [np.arange(0.1, e, 0.2) for k, e in enumerate((WIDTH, DEPTH, HEIGHT)) if k != axis]
-        flat = np.stack(np.meshgrid(*others, indexing="ij"), axis=-1).reshape(-1, 2)
-        for at, inward in ((0.0, 1.0), (extent, -1.0)):
-            centres.append(np.insert(flat, axis, at, axis=1))
-            normals.append(np.tile(inward * np.eye(3)[axis], (len(flat), 1)))
-    cells = np.concatenate(centres)
-    labels = np.full(len(cells), OCCUPIED, np.uint8)
-    return Voxels(cells, np.concatenate(normals), labels, np.full(len(cells), 0.04))
-
-
-def box_points(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float]) -> NDArray[np.float64]:
-    """A box full of points, 5 cm apart."""
-    axes = [np.arange(low, high + 1e-9, 0.05) for low, high in (x, y, z)]
-    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-
-
-def free_grid(x: tuple[float, float] = (0.0, WIDTH), y: tuple[float, float] = (0.0, DEPTH)) -> OccupancyGrid:
-    """Free floor in a rectangle of the room, the rest occupied."""
-    grid = OccupancyGrid(np.array([-0.5, -0.5]), 0.05, np.full((120, 140), Cell.OCCUPIED, np.uint8))
-    c = grid.centres()
-    free = (c[..., 0] > x[0]) & (c[..., 0] < x[1]) & (c[..., 1] > y[0]) & (c[..., 1] < y[1])
-    return replace(grid, cells=np.where(free, Cell.FREE, Cell.OCCUPIED).astype(np.uint8))
 
 
 def at(x: float, y: float) -> NDArray[np.float64]:
@@ -97,66 +56,6 @@ def plan(
         footprint=Footprint(length=1.0, width=0.55),
         parameters=parameters,
     )
-
-
-def sees(cell: tuple[float, float, float], normal: tuple[float, float, float]) -> bool:
-    """Whether a scanner at the origin sees one cell in the open."""
-    cells = Cells(np.array([cell]), np.array([normal]))
-    return bool(prospect(np.zeros(3), cells, NO_OBSTACLES, ScannerView()).seen[0])
-
-
-def test_cells_are_seen_within_range_field_of_view_and_incidence_only() -> None:
-    towards_x = (-1.0, 0.0, 0.0)
-    assert sees((1.6, 0, 0), towards_x)
-    assert not sees((1.4, 0, 0), towards_x)  # nearer than 1.5 m nothing returns
-    assert not sees((10.5, 0, 0), towards_x)
-    assert not sees((1.6, 0, 0), (1.0, 0.0, 0.0))  # from behind
-    # tan 60 = 1.73 and tan 40 = 0.839: the field of view above and below 2 m
-    assert sees((2.0, 0, 3.40), towards_x) and not sees((2.0, 0, 3.55), towards_x)
-    assert sees((2.0, 0, -1.65), towards_x) and not sees((2.0, 0, -1.70), towards_x)
-    # tan 75 = 3.73: oblique by 74.5 deg, and by 75.4 deg
-    assert sees((1.0, 3.60, 0), towards_x) and not sees((1.0, 3.85, 0), towards_x)
-
-
-def test_furniture_hides_the_cells_behind_it_and_no_others() -> None:
-    wall = np.array([[4.0, y, 0.0] for y in np.arange(-2.9, 3.0, 0.2)])
-    cells = Cells(wall, np.tile([-1.0, 0.0, 0.0], (len(wall), 1)))
-    # A post half a metre wide, 2 m away, hides a metre of a wall 4 m away.
-    post = box_points((2.0, 2.2), (-0.25, 0.25), (-1.0, 1.0)) + [0, 0, 0.0]
-    obstacles = find_obstacles(
-        post, Cells(np.array([[0.0, -5, -5], [5, 5, 5]]), np.eye(3)[:2]), walls=None, view=ScannerView()
-    )
-    seen = prospect(np.zeros(3), cells, obstacles, ScannerView()).seen
-    assert not seen[np.abs(wall[:, 1]) < 0.45].any()
-    assert seen[np.abs(wall[:, 1]) > 0.75].all()
-
-
-def test_furniture_close_to_the_scanner_has_no_holes_to_look_through() -> None:
-    wall = np.array([[5.0, y, z] for y in np.arange(-1, 1, 0.1) for z in np.arange(-0.9, 1, 0.1)])
-    cells = Cells(wall, np.tile([-1.0, 0.0, 0.0], (len(wall), 1)))
-    panel = box_points((0.7, 0.72), (-0.5, 0.5), (-0.5, 0.5))
-    obstacles = find_obstacles(panel, cells, walls=None, view=ScannerView())
-    assert len(obstacles.cubes) == 0  # outside the cells' bounding box nothing is kept
-    corners = Cells(np.concatenate([wall, [[0, -2, -2], [0, 2, 2]]]), np.concatenate([cells.normals, np.eye(3)[:2]]))
-    obstacles = find_obstacles(panel, corners, walls=None, view=ScannerView())
-    assert not prospect(np.zeros(3), cells, obstacles, ScannerView()).seen.any()
-
-
-def test_the_points_of_a_wall_do_not_hide_the_wall() -> None:
-    voxels = room_voxels()
-    cells = Cells(voxels.cells_in_world, voxels.normals)
-    noise = np.random.default_rng(0).normal(0, 0.004, (len(cells.centres), 3))
-    obstacles = find_obstacles(cells.centres + noise, cells, walls=ROOM, view=ScannerView())
-    bare = prospect(np.array([2.0, 2.0, 1.2]), cells, NO_OBSTACLES, ScannerView()).seen
-    np.testing.assert_array_equal(prospect(np.array([2.0, 2.0, 1.2]), cells, obstacles, ScannerView()).seen, bare)
-
-
-def test_a_corner_of_the_room_hides_the_other_arm() -> None:
-    # An L: the notch is x > 3, y > 2. From deep in one arm the far end of the other is out of sight.
-    walls = np.array([[0.0, 0], [6, 0], [6, 2], [3, 2], [3, 6], [0, 6]])
-    cells = Cells(np.array([[6.0, 1.0, 1.0], [1.5, 0.0, 1.0]]), np.array([[-1.0, 0, 0], [0.0, 1, 0]]))
-    seen = prospect(np.array([1.5, 5.0, 1.2]), cells, Obstacles(np.empty((0, 3)), walls), ScannerView()).seen
-    assert seen.tolist() == [False, True]
 
 
 SCREEN = ((2.9, 3.1), (2.0, 4.0), (0.0, 2.6))
@@ -308,47 +207,6 @@ def test_no_second_scan_is_taken_beside_an_earlier_one_even_a_failed_one() -> No
     assert stopped.stop_reason == "scan limit"
 
 
-def survey_of(voxels: Voxels, scanners: list[tuple[float, float]]) -> Survey:
-    return Survey(
-        voxels,
-        np.empty((0, 3)),
-        np.array([(x, y, SCANNER) for x, y in scanners]),
-        floor_height=0.0,
-        room=ROOM,
-        parameters=SurveyParameters(),
-    )
-
-
-def test_what_a_scan_failed_to_see_is_not_expected_again_from_the_same_direction() -> None:
-    # The patch was in full view of the first scan and yet stayed occluded: something unknown stands before it.
-    voxels = room_voxels().labelled(OCCLUDED, (5.99, 6.01), (2.0, 3.0), (0.6, 2.0))
-    survey = survey_of(voxels, [(2.0, 2.5)])
-    assert survey.preview(np.array([2.2, 2.6, SCANNER])).gain == 0.0
-    # At (4, 4.6) the direction differs by some 46 deg: 5 x 7 cells of 0.04 m2
-    assert survey.preview(np.array([4.0, 4.6, SCANNER])).gain == pytest.approx(1.4)
-
-
-def test_walls_seen_only_obliquely_are_worth_a_better_view() -> None:
-    # From (1.5, 0.6) the wall y = 0 beyond x = 2.8 is seen at more than 65 deg (tan 65 = 2.14).
-    survey = survey_of(room_voxels(), [(1.5, 0.6)])
-    assert survey.preview(np.array([1.5, 0.6, SCANNER])).quality == 0.0
-    assert survey.preview(np.array([4.0, 2.5, SCANNER])).quality > 3.0
-
-
-def test_a_doorway_wants_to_be_seen_from_both_sides() -> None:
-    # A doorway of 0.8 x 2.0 m = 1.6 m2 in the wall y = 0, whose normal is +y: anticlockwise of it lies -x.
-    doorway = room_voxels().labelled(OPENING, (2.6, 3.4), (-0.01, 0.01), (0.0, 2.0))
-    left, ahead, right = (np.array([x, 2.2, SCANNER]) for x in (1.2, 3.0, 4.8))
-    survey = survey_of(doorway, [(1.2, 2.2)])
-    assert survey.preview(left).doorway == 0.0
-    assert survey.preview(ahead).doorway == 0.0  # within 20 deg of the normal is neither side
-    assert survey.preview(right).doorway == pytest.approx(1.6)
-    assert survey_of(doorway, [(1.2, 2.2), (4.8, 2.2)]).preview(right).doorway == 0.0
-    # A window is no doorway.
-    window = room_voxels().labelled(OPENING, (2.6, 3.4), (-0.01, 0.01), (0.9, 2.0))
-    assert survey_of(window, [(1.2, 2.2)]).preview(right).doorway == 0.0
-
-
 def test_a_doorway_seen_from_one_side_keeps_a_covered_room_going() -> None:
     doorway = room_voxels().labelled(OPENING, (2.6, 3.4), (-0.01, 0.01), (0.0, 2.0))
     more = plan(doorway, scanners=[(4.8, 3.5), (4.8, 2.2)])
@@ -357,24 +215,3 @@ def test_a_doorway_seen_from_one_side_keeps_a_covered_room_going() -> None:
     assert more.candidates[more.chosen].position[0] < 2.6
     assert worth(more.candidates[more.chosen], PlanningParameters(), covered=True) >= 0.5
     assert plan(doorway, scanners=[(4.8, 2.2), (1.2, 2.2)]).stop_reason == "coverage"
-
-
-def test_a_turned_and_shifted_room_is_worth_the_same() -> None:
-    voxels = room_voxels().labelled(OCCLUDED, (5.99, 6.01), (2.0, 4.4), (0.0, 2.6))
-    yaw, shift = np.radians(30), np.array([100.0, -7.0, -3.0])
-    turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
-    turned = replace(voxels, cells_in_world=voxels.cells_in_world @ turn.T + shift, normals=voxels.normals @ turn.T)
-    here, there = np.array([[1.2, 0.8, SCANNER]]), np.array([3.5, 3.1, SCANNER])
-    before = Survey(voxels, np.empty((0, 3)), here, floor_height=0.0, room=ROOM, parameters=SurveyParameters())
-    after = Survey(
-        turned,
-        np.empty((0, 3)),
-        here @ turn.T + shift,
-        floor_height=-3.0,
-        room=ROOM @ turn[:2, :2].T + shift[:2],
-        parameters=SurveyParameters(),
-    )
-    expected, got = before.preview(there), after.preview(turn @ there + shift)
-    assert got.gain == pytest.approx(expected.gain, abs=0.05) and got.gain > 3.0
-    assert got.quality == pytest.approx(expected.quality, abs=0.1)
-    assert got.overlap == pytest.approx(expected.overlap, abs=0.01)

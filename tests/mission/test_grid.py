@@ -1,0 +1,97 @@
+"""The occupancy grid, from points and readings placed by hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from mission.grid import Cell, OccupancyGrid, grid_from_scans, with_laser
+from tests.mission.driving_world import FOOTPRINT, Rectangle, free_room, laser_scan, pose
+
+SCANNER = np.array([[0.0, 0.0, 1.2]])
+
+
+def sheet(x: tuple[float, float], y: tuple[float, float], z: float, *, step: float = 0.025) -> NDArray[np.float64]:
+    """A level surface as points."""
+    xs, ys = np.meshgrid(np.arange(*x, step) + step / 2, np.arange(*y, step) + step / 2)
+    return np.column_stack([xs.ravel(), ys.ravel(), np.full(xs.size, z)])
+
+
+def state(grid: OccupancyGrid, x: float, y: float) -> Cell:
+    return Cell(grid.states(np.array([x, y])))
+
+
+def test_floor_is_free_what_stands_on_it_occupied_and_the_rest_unknown() -> None:
+    floor = sheet((2, 4), (-1, 1), 0.002)
+    box = sheet((3, 3.3), (0, 0.3), 0.4)
+    grid = grid_from_scans(np.concatenate([floor, box]), SCANNER, floor_height=0.0)
+    assert state(grid, 2.5, 0.5) == Cell.FREE
+    assert state(grid, 3.15, 0.15) == Cell.OCCUPIED
+    assert state(grid, 1.0, 0.0) == Cell.UNKNOWN  # within the blind disc
+
+
+def test_what_the_robot_passes_under_and_lone_mixed_returns_do_not_block() -> None:
+    floor = sheet((2, 4), (-1, 1), 0.0)
+    lamp = sheet((3, 3.3), (0, 0.3), 1.9)  # over 1.6 m
+    ghost = np.array([[2.52, -0.52, 0.8]])
+    grid = grid_from_scans(np.concatenate([floor, lamp, ghost]), SCANNER, floor_height=0.0)
+    assert state(grid, 3.15, 0.15) == Cell.FREE
+    assert state(grid, 2.52, -0.52) == Cell.FREE
+
+
+def test_heights_are_measured_from_the_floor_wherever_it_lies() -> None:
+    floor, box = sheet((2, 4), (-1, 1), -3.2), sheet((3, 3.3), (0, 0.3), -3.0)
+    grid = grid_from_scans(np.concatenate([floor, box]), SCANNER - [0, 0, 3.2], floor_height=-3.2)
+    assert state(grid, 2.5, 0.5) == Cell.FREE
+    assert state(grid, 3.15, 0.15) == Cell.OCCUPIED
+
+
+def ring_of_floor(*, shadow: tuple[float, float] = (0.0, 0.0)) -> NDArray[np.float64]:
+    """Floor outside the blind disc of a scanner 1.2 m high (1.43 m), less a sector of azimuths [rad]."""
+    floor = sheet((-4, 4), (-4, 4), 0.0)
+    azimuth = np.arctan2(floor[:, 1], floor[:, 0])
+    dark = (azimuth > shadow[0]) & (azimuth < shadow[1])
+    return floor[(np.hypot(floor[:, 0], floor[:, 1]) > 1.43) & ~dark]
+
+
+def both_lasers(obstacles: list[Rectangle]) -> list[tuple[Any, NDArray[np.float64]]]:
+    return [(laser_scan(pose(0, 0), obstacles, rear=rear), pose(0, 0)) for rear in (False, True)]
+
+
+def test_hokuyos_clear_the_scanners_blind_disc_up_to_what_they_hit() -> None:
+    lasers = both_lasers([(0.9, 1.1, -0.2, 0.2)])
+    grid = grid_from_scans(
+        ring_of_floor(), SCANNER, floor_height=0.0, lasers=lasers, robot_poses=[pose(0, 0)], footprint=FOOTPRINT
+    )
+    assert state(grid, -1.0, 0.3) == Cell.FREE
+    assert state(grid, 0.7, 0.0) == Cell.FREE
+    assert state(grid, 0.91, 0.0) == Cell.OCCUPIED
+    assert state(grid, 1.2, 0.0) == Cell.UNKNOWN  # behind the hit
+    assert state(grid, 0.0, 0.0) == Cell.FREE  # under the robot
+    assert state(grid, 0.0, 0.5) == Cell.UNKNOWN  # beside it, where neither Hokuyo looks
+
+
+def test_a_missing_floor_betrays_a_table_top_that_scanner_and_hokuyo_both_miss() -> None:
+    # A table top 1 m from the scanner gives no return (minimum range) and lies above the Hokuyo's plane.
+    shadowed = ring_of_floor(shadow=(-0.4, 0.4))
+    grid = grid_from_scans(shadowed, SCANNER, floor_height=0.0, lasers=both_lasers([]))
+    assert state(grid, 1.0, 0.0) == Cell.UNKNOWN
+    assert state(grid, -1.0, 0.0) == Cell.FREE
+
+
+def test_a_laser_reading_never_clears_what_the_scanner_found_occupied() -> None:
+    grid = grid_from_scans(
+        np.concatenate([sheet((-1, 3), (-1, 1), 0.0), sheet((1, 1.4), (0, 0.4), 0.75)]), SCANNER, floor_height=0.0
+    )
+    grid = with_laser(grid, laser_scan(pose(0, 0), []), pose(0, 0))
+    assert state(grid, 1.2, 0.2) == Cell.OCCUPIED
+
+
+def test_clearance_is_the_distance_to_the_side_of_the_nearest_cell_that_is_not_free() -> None:
+    grid = free_room(3.0, 2.0)
+    # From the middle of the room: 1 m to the walls on either side.
+    assert grid.clearance_at(np.array([1.5, 1.0])) == pytest.approx(1.0, abs=0.03)
+    assert grid.clearance_at(np.array([99.0, 0.0])) == 0.0
