@@ -82,7 +82,7 @@ class Wall:
         axes = np.stack([self.u, self.v, self.normal], axis=1).astype(points.dtype)
         return (points - self.origin.astype(points.dtype)) @ axes
 
-    def world_from_wall(self, points: NDArray[np.floating]) -> NDArray[np.floating]:
+    def world_from_wall(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
         """(N, 3) points in the world frame [m], from coordinates along u, along v and depth."""
         return self.origin + points @ np.stack([self.u, self.v, self.normal])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 from functools import partial
 from types import TracebackType
@@ -16,7 +16,6 @@ from detector.room import View
 from mission.colouring import colour_scan
 from mission.config import MissionConfig
 from mission.driving import Drive, drive
-from mission.errors import MissionError
 from mission.evaluation import evaluate
 from mission.events import (
     Coloured,
@@ -202,7 +201,7 @@ class Mission:
             room.voxels = label_voxels(room.structure, room.samples, self._config.voxels)
         yield self._event(Labelled, scan_number=self._scans, voxels=room.voxels)
 
-    def _move_on(self) -> Iterator[Event]:
+    def _move_on(self) -> Generator[Event, None, bool]:
         """Choose the next best scan and drive there; a way that ends early leads to a new plan.
 
         Returns:
@@ -286,9 +285,7 @@ class Mission:
         room = self._room
         assert room.structure is not None and room.voxels is not None
         with self._stopwatch("detect"):
-            results = tuple(
-                detect_doors(room_from(room.structure, room.voxels, room.views), self._config.detector)
-            )
+            results = tuple(detect_doors(room_from(room.structure, room.voxels, room.views), self._config.detector))
         yield self._event(
             DoorsDetected,
             results=results,

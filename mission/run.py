@@ -182,9 +182,11 @@ def _check_metrics(bars: Mapping[str, float]) -> None:
 
 def _judge(report: Report, bars: Mapping[str, float]) -> int:
     """Compare the metrics with the bars; a metric that has no value, such as precision without doors, passes."""
-    metrics = dict(report.metrics())
-    doors = metrics["doors"]
-    metrics["found"] = metrics["found"] / doors if doors else None
+    metrics = report.metrics()
+    if metrics["doors"]:
+        metrics["found"] = (metrics["found"] or 0) / metrics["doors"]
+    else:
+        metrics["found"] = None
     status = DONE
     for name, bar in bars.items():
         value = metrics[name]

@@ -90,7 +90,7 @@ def test_an_interrupted_mission_leaves_readable_files(tmp_path: Path, after: str
         "handle = r.Report.handle\n"
         "def say(self, event):\n"
         "    handle(self, event)\n"
-        f"    print(type(event).__name__, flush=True)\n"
+        "    print(type(event).__name__, flush=True)\n"
         "r.Report.handle = say\n"
         "sys.exit(main(sys.argv[1:]))"
     )
