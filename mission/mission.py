@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass, field
 from functools import partial
 from types import TracebackType
 from typing import Any, Literal, Self
@@ -12,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.detect import detect_doors
-from detector.room import View
 from mission.colouring import colour_scan
 from mission.config import MissionConfig
-from mission.driving import Drive, drive
+from mission.driving import drive
 from mission.evaluation import evaluate
 from mission.events import (
     Coloured,
@@ -28,55 +26,27 @@ from mission.events import (
     MissionStarted,
     Photographed,
     Planned,
-    Pose,
     Registered,
     Remarked,
     Scanned,
     Structured,
 )
-from mission.grid import Footprint, OccupancyGrid, grid_from_scans
-from mission.planning import Plan, plan_next_scan
+from mission.explored_room import ExploredRoom
+from mission.grid import Footprint
+from mission.localisation import localise
+from mission.mopad import Mopad
 from mission.registration import Registrar
-from mission.samples import PosedSample, place, sample_scan
+from mission.rigid import Pose, inverted
+from mission.samples import place, sample_scan
 from mission.stopwatch import Stopwatch
-from mission.structure import Structure, find_structure
+from mission.structure import Structure
 from mission.versions import versions
-from mission.voxels import VoxelModel, label_voxels, room_from
-from sim.camera import Camera
-from sim.hokuyo import Hokuyo, LaserScan
-from sim.render import Renderer
-from sim.robot import Robot
-from sim.scanner import Scanner
+from mission.voxels import VoxelModel, room_from
+from sim.doors import DoorTruth
 from sim.scene import Scene
-
-SECONDS_PER_PHOTO = 4.0
-"""Turning on and charging the flash: our assumption; Riegl and Nikon give no figure [s]."""
 
 MAX_DETOURS = 3
 """So many ways in a row may end before their goal; then the room is done with what is there."""
-
-
-@dataclass
-class Room:
-    """What the robot knows of the room that it is in: estimates only."""
-
-    number: int
-    views: list[View] = field(default_factory=list)
-    samples: list[PosedSample] = field(default_factory=list)
-    lasers: list[tuple[LaserScan, Pose]] = field(default_factory=list)
-    robot_poses: list[Pose] = field(default_factory=list)
-    structure: Structure | None = None
-    voxels: VoxelModel | None = None
-
-    @property
-    def scanners_in_world(self) -> NDArray[np.float64]:
-        """(S, 3) where was scanned [m]."""
-        return np.array([sample.scanner_in_world for sample in self.samples])
-
-    @property
-    def points_in_world(self) -> NDArray[np.float32]:
-        """(N, 3) thinned points of all scans [m]."""
-        return np.concatenate([sample.points_in_world for sample in self.samples])
 
 
 class Mission:
@@ -96,16 +66,9 @@ class Mission:
         """
         self._scene, self._config, self._seed = scene, config, seed
         self._stopwatch = stopwatch or Stopwatch()
-        scanner, camera, hokuyo, robot = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4))
-        self._renderer = Renderer(scene.model, hidden_bodies=scene.robot_bodies)
-        self._scan = partial(Scanner(self._renderer, config.scanner).scan, scene.data, rng=scanner)
-        self._photograph = partial(Camera(self._renderer, config.camera).photograph, scene.data, rng=camera)
-        self._hokuyo, self._hokuyo_rng = Hokuyo(scene.model, scene.robot_bodies, config.hokuyo), hokuyo
-        self._robot = Robot(scene, config.robot, robot)
-        self._footprint = Footprint(*self._robot.footprint)
+        self._mopad = Mopad(scene, config, seed=seed)
         self._registrar = Registrar(config.registration)
-        self._world_from_odometry: Pose = np.eye(4)
-        self._room = Room(1)
+        self._room = ExploredRoom(1, Footprint(*self._mopad.robot.footprint), config)
         self._steps = 0
         self._scans = 0
 
@@ -115,7 +78,7 @@ class Mission:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._renderer.close()
+        self._mopad.__exit__(kind, error, trace)
 
     def run(self) -> Iterator[Event]:
         """Carry the mission out, stage by stage.
@@ -124,12 +87,13 @@ class Mission:
             MissionError: It cannot go on.
         """
         yield self._started()
-        complete = False
-        while not complete:
+        while True:
             yield from self._scan_here()
-            yield from self._understand()
-            complete = yield from self._move_on()
-        yield from self._find_doors()
+            structure, voxels = yield from self._understand()
+            arrived = yield from self._move_on(structure, voxels)
+            if not arrived:
+                break
+        yield from self._find_doors(structure, voxels)
         yield self.finished("completed", "the room is scanned and its doors are judged")
 
     def finished(self, outcome: Literal["completed", "interrupted", "failed"], reason: str) -> MissionFinished:
@@ -137,8 +101,7 @@ class Mission:
         return self._event(MissionFinished, outcome=outcome, reason=reason)
 
     def _started(self) -> MissionStarted:
-        robot = self._robot
-        self._look_around(self._base())
+        robot = self._mopad.robot
         return self._event(
             MissionStarted,
             scene=self._scene.name,
@@ -146,7 +109,7 @@ class Mission:
             seed=self._seed,
             config=self._config.model_dump(mode="json"),
             versions=versions(),
-            world_from_base=self._base(),
+            world_from_base=self._mopad.world_from_base,
             robot=robot.shape(),
             base_from_scanner=robot.base_from_scanner,
             true_doors=self._scene.true_doors(),
@@ -155,119 +118,106 @@ class Mission:
     def _scan_here(self) -> Iterator[Event]:
         """Scan, photograph, register and colour at the present pose."""
         self._scans += 1
-        number, truth = self._scans, self._robot.true_world_from_base @ self._robot.base_from_scanner
+        mopad, room = self._mopad, self._room
         with self._stopwatch("scan"):
-            scan = self._scan(world_from_scanner=truth)
-        self._robot.wait(scan.duration)
-        yield self._event(Scanned, scan_number=number, scan=scan, true_world_from_scanner=truth)
-
+            scan = mopad.scan()
+        yield self._event(
+            Scanned, scan_number=self._scans, scan=scan, true_world_from_scanner=mopad.true_world_from_scanner
+        )
         with self._stopwatch("photograph"):
-            photos = self._photograph(world_from_scanner=truth)
-        self._robot.wait(SECONDS_PER_PHOTO * len(photos))
-        yield self._event(Photographed, scan_number=number, photos=photos)
+            photos = mopad.photograph()
+        yield self._event(Photographed, scan_number=self._scans, photos=photos)
 
-        guess = self._base() @ self._robot.base_from_scanner
+        guess = mopad.world_from_base @ mopad.robot.base_from_scanner
         with self._stopwatch("register"):
             sample = sample_scan(scan, self._config.samples)
             found = self._registrar.register(sample, guess)
         yield self._event(
             Registered,
-            scan_number=number,
+            scan_number=self._scans,
             guess_world_from_scanner=guess,
             world_from_scanner=found.world_from_scanner,
             fitness=found.fitness,
             rmse=found.rmse,
             accepted=found.accepted,
             reason=found.reason,
-            true_world_from_scanner=truth,
+            true_world_from_scanner=mopad.true_world_from_scanner,
         )
         if not found.accepted:
-            yield self._event(Remarked, level="warning", text=f"scan {number} is left out: {found.reason}")
+            room.rejected_in_world.append(guess[:3, 3])
+            yield self._event(Remarked, level="warning", text=f"scan {self._scans} is left out: {found.reason}")
             return
-        self._correct(found.world_from_scanner)
-        self._room.samples.append(place(sample, found.world_from_scanner))
-
+        mopad.believe(found.world_from_scanner @ inverted(mopad.robot.base_from_scanner))
+        self._look_around()
+        room.samples.append(place(sample, found.world_from_scanner))
         with self._stopwatch("colour"):
-            self._room.views.append(colour_scan(scan, photos, found.world_from_scanner))
-        yield self._event(Coloured, scan_number=number, view=self._room.views[-1])
+            room.views.append(colour_scan(scan, photos, found.world_from_scanner))
+        yield self._event(Coloured, scan_number=self._scans, view=room.views[-1])
 
-    def _understand(self) -> Iterator[Event]:
+    def _understand(self) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
         """Floor, ceiling, walls and voxels of the room as far as it is scanned."""
-        room = self._room
         with self._stopwatch("structure"):
-            room.structure = find_structure(room.samples, self._config.structure)
-        yield self._event(Structured, scan_number=self._scans, structure=room.structure)
+            structure = self._room.structure()
+        yield self._event(Structured, scan_number=self._scans, structure=structure)
         with self._stopwatch("voxels"):
-            room.voxels = label_voxels(room.structure, room.samples, self._config.voxels)
-        yield self._event(Labelled, scan_number=self._scans, voxels=room.voxels)
+            voxels = self._room.voxels(structure)
+        yield self._event(Labelled, scan_number=self._scans, voxels=voxels)
+        return structure, voxels
 
-    def _move_on(self) -> Generator[Event, None, bool]:
+    def _move_on(self, structure: Structure, voxels: VoxelModel) -> Generator[Event, None, bool]:
         """Choose the next best scan and drive there; a way that ends early leads to a new plan.
 
         Returns:
-            Whether the room is complete.
+            Whether the robot stands where it is to scan next; if not, the room is complete.
         """
+        mopad = self._mopad
         for _ in range(MAX_DETOURS):
             with self._stopwatch("plan"):
-                grid, plan = self._plan()
+                grid = self._room.grid(structure)
+                plan = self._room.plan(
+                    structure,
+                    voxels,
+                    grid,
+                    world_from_base=mopad.world_from_base,
+                    base_from_scanner=mopad.robot.base_from_scanner,
+                )
             yield self._event(Planned, scan_number=self._scans, plan=plan, grid=grid)
             if plan.path is None:
-                return True
+                return False
             with self._stopwatch("drive"):
-                drove = self._drive(plan.path)
+                drove = self._drive(plan.path, structure.floor_height)
             yield drove
             if drove.arrived:
-                return False
+                return True
         yield self._event(Remarked, level="warning", text=f"gave up after {MAX_DETOURS} ways that ended early")
-        return True
+        return False
 
-    def _plan(self) -> tuple[OccupancyGrid, Plan]:
-        room, config = self._room, self._config
-        assert room.structure is not None and room.voxels is not None
-        grid = grid_from_scans(
-            room.points_in_world,
-            room.scanners_in_world,
-            floor_height=room.structure.floor_height,
-            lasers=room.lasers,
-            robot_poses=room.robot_poses,
-            footprint=self._footprint,
-            parameters=config.navigation.grid,
-        )
-        plan = plan_next_scan(
-            room.voxels,
-            room.points_in_world,
-            grid,
-            world_from_base=self._base(),
-            base_from_scanner=self._robot.base_from_scanner,
-            scanners_in_world=room.scanners_in_world,
-            floor_height=room.structure.floor_height,
-            room=room.structure.polygon,
-            footprint=self._footprint,
-            navigation=config.navigation,
-            parameters=config.planning,
-        )
-        return grid, plan
-
-    def _drive(self, path: NDArray[np.float64]) -> Drove:
-        """Drive along a path as far as it goes."""
+    def _drive(self, path: NDArray[np.float64], floor_height: float) -> Drove:
+        """Drive along a path as far as it goes, matching the Hokuyos with the room on the way."""
+        mopad, navigation = self._mopad, self._config.navigation
         truth: list[Pose] = []
         angles: list[list[float]] = []
 
         def watch() -> None:
-            truth.append(self._robot.true_world_from_base)
+            truth.append(mopad.robot.true_world_from_base)
             angles.append([_opening(door) for door in self._scene.true_doors()])
 
-        leg: Drive = drive(
-            self._robot,
+        laser_height = mopad.robot.base_from_lasers[0][2, 3]
+        laser_map = self._room.laser_map(floor_height + laser_height)
+        leg = drive(
+            mopad.robot,
             path,
-            self._measure_lasers,
-            world_from_odometry=self._world_from_odometry,
-            footprint=self._footprint,
-            parameters=self._config.navigation.driving,
+            mopad.measure_lasers,
+            world_from_odometry=mopad.world_from_odometry,
+            footprint=self._room.footprint,
+            parameters=navigation.driving,
+            localise=partial(localise, laser_map, parameters=navigation.localisation),
             watch=watch,
         )
-        self._room.lasers += zip(leg.laser_scans, leg.world_from_base_at_laser, strict=True)
-        self._look_around(self._base())
+        mopad.believe(leg.world_from_base[-1])
+        if not leg.arrived:  # what stopped it must be on the map; after an arrival the next scan tells more
+            self._room.lasers += zip(leg.laser_scans, leg.world_from_base_at_laser, strict=True)
+            self._look_around()
         return self._event(
             Drove,
             planned_path=path,
@@ -280,59 +230,33 @@ class Mission:
             true_door_angles=np.array(angles),
         )
 
-    def _find_doors(self) -> Iterator[Event]:
+    def _look_around(self) -> None:
+        """Note where the robot stands and what the Hokuyos see there."""
+        world_from_base = self._mopad.world_from_base
+        self._room.robot_poses.append(world_from_base)
+        self._room.lasers += [(scan, world_from_base) for scan in self._mopad.measure_lasers()]
+
+    def _find_doors(self, structure: Structure, voxels: VoxelModel) -> Iterator[Event]:
         """Hand the completed room to the detector; compare what it found with the joints."""
         room = self._room
-        assert room.structure is not None and room.voxels is not None
         with self._stopwatch("detect"):
-            results = tuple(detect_doors(room_from(room.structure, room.voxels, room.views), self._config.detector))
+            results = tuple(detect_doors(room_from(structure, voxels, room.views), self._config.detector))
         yield self._event(
             DoorsDetected,
             results=results,
-            floor_height=room.structure.floor_height,
-            ceiling_height=room.structure.ceiling_height,
+            floor_height=structure.floor_height,
+            ceiling_height=structure.ceiling_height,
         )
         with self._stopwatch("evaluate"):
             doors, missed = evaluate(results, self._scene.true_doors(), room=room.number)
         yield self._event(DoorsEvaluated, doors=doors, missed=missed)
 
-    def _base(self) -> Pose:
-        """Where the robot believes to be, world_from_base."""
-        return self._world_from_odometry @ self._robot.odometry
-
-    def _correct(self, world_from_scanner: Pose) -> None:
-        """Take the pose of a registered scan over into the odometry."""
-        world_from_base = world_from_scanner @ np.linalg.inv(self._robot.base_from_scanner)
-        self._world_from_odometry = world_from_base @ np.linalg.inv(self._robot.odometry)
-
-    def _look_around(self, world_from_base: Pose) -> None:
-        """Note where the robot stands and what the Hokuyos see there."""
-        self._room.robot_poses.append(world_from_base)
-        self._room.lasers += [(scan, world_from_base) for scan in self._measure_lasers()]
-
-    def _measure_lasers(self) -> list[LaserScan]:
-        return [
-            self._hokuyo.measure(
-                self._scene.data,
-                self._robot.true_world_from_base @ base_from_laser,
-                base_from_laser=base_from_laser,
-                rng=self._hokuyo_rng,
-                time=self._now(),
-            )
-            for base_from_laser in self._robot.base_from_lasers
-        ]
-
-    def _now(self) -> int:
-        """Mission time [ns]."""
-        return round(self._robot.time * 1e9)
-
     def _event(self, kind: type[Any], **content: Any) -> Any:
-        event = kind(step=self._steps, time=self._now(), room=self._room.number, **content)
+        event = kind(step=self._steps, time=self._mopad.time, room=self._room.number, **content)
         self._steps += 1
         return event
 
 
-def _opening(door: Any) -> float:
+def _opening(door: DoorTruth) -> float:
     """Opening of the wider leaf, as an angle [rad], or of a sliding one [m]."""
-    openings = [leaf.opening if np.isnan(leaf.opening_angle) else leaf.opening_angle for leaf in door.leaves]
-    return float(max(openings))
+    return max(leaf.opening if np.isnan(leaf.opening_angle) else leaf.opening_angle for leaf in door.leaves)

@@ -6,6 +6,7 @@ from types import TracebackType
 from typing import Self
 
 import numpy as np
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
@@ -89,18 +90,21 @@ class TerminalProgress:
         )
 
     def _say(self, event: Event, text: str) -> None:
-        self._console.print(f"[dim]{event.time / 1e9:6.0f} s[/dim]  {text}", highlight=False)
+        self._console.print(f"[dim]{event.time / 1e9:6.0f} s[/dim]  {text}", highlight=False, soft_wrap=True)
 
 
 def doors_table(event: DoorsEvaluated) -> Table:
     """Each door beside its joint, and the doors that were missed."""
-    table = Table(title=f"Room {event.room}: {len(event.doors)} doors", title_justify="left")
-    for column in ("door", "kind", "state", "size [m]", "angle", "joint", "error", "precision", "recall", "true door"):
-        table.add_column(column, justify="left" if column in {"door", "kind", "state", "true door"} else "right")
+    count = len(event.doors)
+    title = f"Room {event.room}: {count} door{'s' * (count != 1)}"
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for column in ("door", "state", "size [m]", "angle", "joint", "error", "precision", "recall", "true door"):
+        justify = "left" if column in {"door", "state", "true door"} else "right"
+        table.add_column(column, justify=justify, no_wrap=True)  # type: ignore[arg-type]
     for door in event.doors:
         table.add_row(*_row(door))
     for name in event.missed:
-        table.add_row(*["[red]missed[/red]", *["-"] * 8, name])
+        table.add_row(*["[red]missed[/red]", *["-"] * 7, name])
     return table
 
 
@@ -108,8 +112,7 @@ def _row(evaluation: DoorEvaluation) -> list[str]:
     door, areas = evaluation.door, evaluation.overlap
     return [
         evaluation.door_id,
-        door.kind,
-        door.state,
+        door.state if door.kind == "single" else f"{door.state}, {door.kind}",
         f"{door.rectangle.width:.3f} x {door.rectangle.height:.3f}",
         _degrees(door.opening_angle),
         _degrees(evaluation.true_angle),

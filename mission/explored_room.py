@@ -1,0 +1,98 @@
+"""What the robot knows of the room that it is in: estimates only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from detector.room import View
+from mission.config import MissionConfig
+from mission.grid import Footprint, OccupancyGrid, grid_from_scans
+from mission.localisation import LaserMap, laser_map
+from mission.planning import Plan, plan_next_scan
+from mission.rigid import Pose
+from mission.samples import PosedSample
+from mission.structure import Structure, find_structure
+from mission.voxels import VoxelModel, label_voxels
+from sim.hokuyo import LaserScan
+
+
+@dataclass
+class ExploredRoom:
+    """Scans of a room, and what follows from them."""
+
+    number: int
+    footprint: Footprint
+    config: MissionConfig
+    views: list[View] = field(default_factory=list)
+    samples: list[PosedSample] = field(default_factory=list)
+    rejected_in_world: list[NDArray[np.float64]] = field(default_factory=list)
+    """(3,) where scans were taken that could not be registered [m]."""
+    lasers: list[tuple[LaserScan, Pose]] = field(default_factory=list)
+    """Hokuyo scans with the pose of the base."""
+    robot_poses: list[Pose] = field(default_factory=list)
+    """Where the robot has stood."""
+
+    def structure(self) -> Structure:
+        """Floor, ceiling and walls as far as they are scanned.
+
+        Raises:
+            MissionError: There is no floor or no wall.
+        """
+        return find_structure(self.samples, self.config.structure)
+
+    def voxels(self, structure: Structure) -> VoxelModel:
+        """The labelled voxels of the structure."""
+        return label_voxels(structure, self.samples, self.config.voxels)
+
+    def laser_map(self, height: float) -> LaserMap:
+        """What the Hokuyos should see at their height over the floor [m]."""
+        normals = np.concatenate([sample.normals_in_world for sample in self.samples])
+        return laser_map(self._points_in_world, normals, height=height, parameters=self.config.navigation.localisation)
+
+    def grid(self, structure: Structure) -> OccupancyGrid:
+        """Where the robot can stand and drive."""
+        return grid_from_scans(
+            self._points_in_world,
+            self._scanners_in_world,
+            floor_height=structure.floor_height,
+            lasers=self.lasers,
+            robot_poses=self.robot_poses,
+            footprint=self.footprint,
+            parameters=self.config.navigation.grid,
+        )
+
+    def plan(
+        self,
+        structure: Structure,
+        voxels: VoxelModel,
+        grid: OccupancyGrid,
+        *,
+        world_from_base: Pose,
+        base_from_scanner: Pose,
+    ) -> Plan:
+        """The next best scan, or why there is none."""
+        return plan_next_scan(
+            voxels,
+            self._points_in_world,
+            grid,
+            world_from_base=world_from_base,
+            base_from_scanner=base_from_scanner,
+            scanners_in_world=self._scanners_in_world,
+            failed_in_world=np.array(self.rejected_in_world).reshape(-1, 3),
+            floor_height=structure.floor_height,
+            room=structure.polygon,
+            footprint=self.footprint,
+            navigation=self.config.navigation,
+            parameters=self.config.planning,
+        )
+
+    @property
+    def _scanners_in_world(self) -> NDArray[np.float64]:
+        return np.array([sample.scanner_in_world for sample in self.samples])
+
+    @property
+    def _points_in_world(self) -> NDArray[np.float32]:
+        return np.concatenate([sample.points_in_world for sample in self.samples])

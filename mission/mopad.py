@@ -1,0 +1,94 @@
+"""MoPAD as the mission handles it: the robot, its sensors, its clock, and where it believes to be."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+
+from mission.config import MissionConfig
+from mission.rigid import Pose, inverted
+from sim.camera import Camera, Photo
+from sim.hokuyo import Hokuyo, LaserScan
+from sim.render import Renderer
+from sim.robot import Robot
+from sim.scanner import Scan, Scanner
+from sim.scene import Scene
+
+SECONDS_PER_PHOTO = 4.0
+"""Turning on and charging the flash: our assumption; Riegl and Nikon give no figure [s]."""
+
+
+class Mopad:
+    """The robot in its scene. Sensors measure from the true pose; what is estimated never reads it."""
+
+    def __init__(self, scene: Scene, config: MissionConfig, *, seed: int) -> None:
+        """Switch the robot on at its start.
+
+        Args:
+            scene: With the robot in it.
+            config: Parameters of robot and sensors.
+            seed: Of all noise; each sensor draws from a stream of its own.
+        """
+        scanner, camera, hokuyo, robot = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4))
+        self._scene = scene
+        self._renderer = Renderer(scene.model, hidden_bodies=scene.robot_bodies)
+        self._scanner, self._scanner_rng = Scanner(self._renderer, config.scanner), scanner
+        self._camera, self._camera_rng = Camera(self._renderer, config.camera), camera
+        self._hokuyo, self._hokuyo_rng = Hokuyo(scene.model, scene.robot_bodies, config.hokuyo), hokuyo
+        self.robot = Robot(scene, config.robot, robot)
+        self.world_from_odometry: Pose = np.eye(4)
+        """What registration and localisation correct the odometry by."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._renderer.close()
+
+    @property
+    def time(self) -> int:
+        """Mission time [ns]."""
+        return round(self.robot.time * 1e9)
+
+    @property
+    def world_from_base(self) -> Pose:
+        """Where the robot believes to be."""
+        return self.world_from_odometry @ self.robot.odometry
+
+    @property
+    def true_world_from_scanner(self) -> Pose:
+        """Where the scanner is."""
+        return self.robot.true_world_from_base @ self.robot.base_from_scanner
+
+    def believe(self, world_from_base: Pose) -> None:
+        """Correct the odometry: the robot is there now."""
+        self.world_from_odometry = world_from_base @ inverted(self.robot.odometry)
+
+    def scan(self) -> Scan:
+        """One panorama; takes the time that the VZ-400 needs."""
+        scan = self._scanner.scan(self._scene.data, self.true_world_from_scanner, self._scanner_rng)
+        self.robot.wait(scan.duration)
+        return scan
+
+    def photograph(self) -> tuple[Photo, ...]:
+        """One turn of the camera."""
+        photos = self._camera.photograph(self._scene.data, self.true_world_from_scanner, self._camera_rng)
+        self.robot.wait(SECONDS_PER_PHOTO * len(photos))
+        return photos
+
+    def measure_lasers(self) -> list[LaserScan]:
+        """One sweep of each Hokuyo."""
+        return [
+            self._hokuyo.measure(
+                self._scene.data,
+                self.robot.true_world_from_base @ base_from_laser,
+                base_from_laser=base_from_laser,
+                rng=self._hokuyo_rng,
+                time=self.time,
+            )
+            for base_from_laser in self.robot.base_from_lasers
+        ]
