@@ -8,6 +8,7 @@ there is and no random number is needed. The line is then fitted to its inliers 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import Literal
 
 import numpy as np
@@ -18,6 +19,8 @@ from detector.result import Leaf, Rectangle
 
 HINGE_DEPTHS = np.arange(-0.30, 0.091, 0.02)
 """Where the hinge may lie: up to a wall's thickness behind the plane, up to a frame's before it [m]."""
+FACE_OFFSETS = (0.0, 0.025, 0.05, -0.02)
+"""How far into the doorway the seen face may start: a wide open leaf may show the one that is its thickness off [m]."""
 ANGLE_STEP = np.deg2rad(0.5)
 RADIAL_STEP = 0.04
 """Length of the pieces of a leaf that must be seen [m]."""
@@ -36,7 +39,8 @@ MIN_POINTS = 40
 class _Line:
     """A leaf hypothesis in plan, seen from its hinge: r along the closed leaf, d into the room."""
 
-    hinge_depth: float
+    start: tuple[float, float]
+    """r and d of the point that the leaf's face starts from [m]."""
     angle: float
     """From the closed leaf, positive into the room [rad]."""
     cover: float
@@ -89,9 +93,11 @@ def _consensus(plan: NDArray, width: float, parameters: DetectorParameters) -> _
     first = round(NEAREST_RADIUS / RADIAL_STEP)
     best: _Line | None = None
     best_score = MIN_COVER
-    for depth in HINGE_DEPTHS:
-        radius, angle = np.hypot(plan[:, 0], plan[:, 1] - depth), np.arctan2(plan[:, 1] - depth, plan[:, 0])
-        inside = (np.abs(angle) <= parameters.max_angle) & (radius < bins * RADIAL_STEP)
+    centres = (np.arange(count) + 0.5) * ANGLE_STEP - parameters.max_angle
+    for depth, offset in product(HINGE_DEPTHS, FACE_OFFSETS):
+        along, out = plan[:, 0] - offset, plan[:, 1] - depth
+        radius, angle = np.hypot(along, out), np.arctan2(out, along)
+        inside = (np.abs(angle) < parameters.max_angle) & (radius < bins * RADIAL_STEP)
         column = ((angle[inside] + parameters.max_angle) / ANGLE_STEP).astype(np.int64)
         cell = column * bins + (radius[inside] / RADIAL_STEP).astype(np.int64)
         counts = np.bincount(cell, minlength=count * bins)[: count * bins].reshape(count, bins)
@@ -100,14 +106,13 @@ def _consensus(plan: NDArray, width: float, parameters: DetectorParameters) -> _
         occupied = counts >= max(3, len(plan) // 4000)
         cover = occupied[:, first:leaf_bins].mean(axis=1)
         beyond = occupied[:, leaf_bins + 3 :].mean(axis=1)  # a wall goes on where a leaf ends
-        centres = (np.arange(count) + 0.5) * ANGLE_STEP - parameters.max_angle
-        # of equal covers the one with the hinge nearest to the wall's face, and the one with more points
+        # of equal covers the one that starts nearest to the jamb on the wall's face, and the one with more points
         dense = np.log1p(counts[:, first:leaf_bins].sum(axis=1)) / 100
-        score = cover - 0.7 * beyond - 0.3 * abs(depth) + dense
+        score = cover - 0.7 * beyond - 0.3 * abs(depth) - abs(offset) + dense
         score[np.abs(centres) < parameters.closed_angle] = -1
         i = int(score.argmax())
         if score[i] > best_score and cover[i] >= MIN_COVER:
-            best, best_score = _Line(float(depth), float(centres[i]), float(cover[i])), float(score[i])
+            best, best_score = _Line((offset, float(depth)), float(centres[i]), float(cover[i])), float(score[i])
     return best
 
 
@@ -116,7 +121,7 @@ def _refine(
 ) -> tuple[Leaf, float] | None:
     """Total least squares on the inliers of the hypothesis."""
     (hinge, sign, corner), (doorway, parameters) = side, of
-    angle, origin = line.angle, np.array([0.0, line.hinge_depth])
+    angle, origin = line.angle, np.array(line.start)
     tolerance = 0.035
     keep = np.zeros(len(plan), bool)
     for round_number in range(6):
@@ -136,7 +141,7 @@ def _refine(
             return None
         origin, angle = _total_least_squares(plan[keep], angle)
         tolerance = parameters.leaf_inlier
-        origin = origin - along * (origin[0] * along[0] + (origin[1] - line.hinge_depth) * along[1])
+        origin = origin - along * ((origin - np.array(line.start)) @ along)  # radii keep counting from the hinge
     spread = radius[keep]
     if np.ptp(v[keep]) < 0.3 * doorway.height and parameters.leaf_slice == "all":
         return None

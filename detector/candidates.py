@@ -47,6 +47,8 @@ class Scene:
     """First row below the floor."""
     lowest_row: int
     """First row that may hold points of the floor instead of the wall."""
+    protrusion: float
+    """What is nearer than this to the room is not in the doorway [m]."""
 
     def sums(self, mask: Mask) -> NDArray[np.int64]:
         """Integral image of a mask, above the floor's points."""
@@ -111,9 +113,10 @@ def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> 
 
 def _share(hits: NDArray, visible: NDArray, boxes: NDArray, least_visible: float, blind: float = 0.0) -> NDArray:
     """Hits per visible pixel of each box; `blind` where too little of it is visible."""
-    area = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
     seen = box_sums(visible, boxes)
-    return np.where(seen >= least_visible * area, np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0), blind)
+    return np.where(
+        seen >= least_visible * _area(boxes), np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0), blind
+    )
 
 
 def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]:
@@ -127,7 +130,7 @@ def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]
         ],
         axis=1,
     ).astype(np.int64)
-    area = np.maximum((box[:, 2] - box[:, 0]) * (box[:, 3] - box[:, 1]), 1)
+    area = _area(box)
     through = scene.seen == Visibility.THROUGH
     masks = (scene.wall, through | (scene.seen == Visibility.DATA), through)
     wall, visible, passed = (box_sums(scene.sums(mask), box) / area for mask in masks)
@@ -137,17 +140,25 @@ def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]
 def surroundings(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
     """(N, 3) share of the visible strips outside the left, top and right sides that lies in the wall's plane.
 
-    A rectangle inside an open doorway, between the jamb and the edge of the leaf, has no wall on one side. 1 where the
-    strip is hidden or beyond the image.
+    A rectangle inside an open doorway, between the jamb and the edge of the leaf, has no wall on one side. Where the
+    strip is hidden or beyond the image: 1, but 0 where something that stands out into the room hides it from within.
     """
     plane = scene.sums(scene.face)
     visible = scene.sums((scene.seen == Visibility.DATA) | (scene.seen == Visibility.THROUGH))
+    standing_out = scene.sums(np.nan_to_num(scene.merged.depth, nan=-np.inf) > scene.protrusion)
     result = np.ones((len(boxes), 3))
-    for i, strip in enumerate(strips(boxes, scene, outside=True)):
-        area = np.maximum((strip[:, 2] - strip[:, 0]) * (strip[:, 3] - strip[:, 1]), 1)
-        seen = box_sums(visible, strip)
-        result[:, i] = np.where(seen > 0.2 * area, box_sums(plane, strip) / np.maximum(seen, 1), 1.0)
+    sides = zip(strips(boxes, scene, outside=True), strips(boxes, scene, outside=False), strict=True)
+    for i, (outer, inner) in enumerate(sides):
+        seen = box_sums(visible, outer)
+        share = box_sums(plane, outer) / np.maximum(seen, 1)
+        hidden_by_leaf = box_sums(standing_out, inner) > 0.5 * _area(inner)
+        result[:, i] = np.where(seen > 0.2 * _area(outer), share, np.where(hidden_by_leaf, 0.0, 1.0))
     return result
+
+
+def _area(boxes: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(N,) pixels of boxes (N, 4), at least one."""
+    return np.maximum((boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1]), 1)
 
 
 def strips(boxes: Boxes, scene: Scene, *, outside: bool) -> list[NDArray[np.int64]]:

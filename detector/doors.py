@@ -63,7 +63,7 @@ def find_doors(
     edges = find_edges(merged, seen, parameters)
     floor_row = min(round((height - floor) / px), merged.depth.shape[0])
     lowest = max(1, floor_row - int(np.ceil(parameters.floor_margin / px)) - 1)
-    scene = Scene(merged, seen, edges, area.mask, face, floor_row, lowest)
+    scene = Scene(merged, seen, edges, area.mask, face, floor_row, lowest, parameters.max_protrusion)
     vertical = find_lines(edges.upright[:lowest], 0, round(parameters.min_height / px), LINE_SHARE)
     horizontal = find_lines(edges.level[:lowest], 1, round(parameters.min_width / px), LINE_SHARE)
     boxes = door_boxes(vertical, horizontal, scene, parameters)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +17,9 @@ DIRECTIONS = np.array([(-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1
 """(8, 2) row and column steps N, NE, E, SE, S, SW, W, NW; opposite ones are four apart."""
 SMOOTHING_PX = 3.0
 """Standard deviation of the filter before the intensity is quantised: noise would break every segment up."""
-MIN_FEET = 6
-"""Profiles, of eight, that must end at a foot; more than two cut off by an edge or a hole is no bell."""
-DISCONTINUITY = 0.10
+MIN_FEET = 5
+"""Half profiles, of eight, that must run out; more than three cut off by an edge or a hole make no bell."""
+DISCONTINUITY = 0.03
 """Drop of the intensity from one pixel to the next that ends a highlight."""
 FLAT_RUN = 6
 """Pixels without descent after which the slope counts as zero."""
@@ -52,7 +54,7 @@ def find_highlights(
             _fill_spline(regions, contour)
             contours.append(contour)
     found = (regions > 0) & image.coloured
-    return Highlights(region, levels, candidates, found, tuple(contours), inpaint(image.colour, found))
+    return Highlights(region, levels, candidates, found, tuple(contours), _repaired(image, found))
 
 
 def _candidates(
@@ -92,32 +94,39 @@ def _contour(
     """(8, 2) end points of the profiles through a region's centroid, or None if none of the four fits a Gaussian."""
     longest = parameters.highlight_max_radius / parameters.pixel_size
     profiles = [_half_profile(intensity, known, centre, step, longest) for step in DIRECTIONS]
-    contrast = parameters.highlight_min_contrast
-    feet = sum(
-        len(p) > 1 and len(p) * np.hypot(*d) < longest and p[0] - p[-1] > contrast / 2
-        for p, d in zip(profiles, DIRECTIONS, strict=True)
-    )
+    feet = sum(p.has_foot and p.values[0] - p.values[-1] > parameters.highlight_min_contrast / 2 for p in profiles)
     if feet < MIN_FEET:  # the fall-off of the flash, or a bright surface: not a highlight
         return None
-    full = [np.concatenate([profiles[i + 4][:0:-1], profiles[i]]) for i in range(4)]
+    full = [np.concatenate([profiles[i + 4].values[:0:-1], profiles[i].values]) for i in range(4)]
     if not any(_is_gaussian(profile, parameters) for profile in full):
         return None
-    return np.array([centre + (len(p) - 1) * step for p, step in zip(profiles, DIRECTIONS, strict=True)])
+    return np.array([centre + (len(p.values) - 1) * step for p, step in zip(profiles, DIRECTIONS, strict=True)])
 
 
-def _half_profile(intensity: NDArray, known: Mask, centre: NDArray, step: NDArray, longest: float) -> NDArray:
+@dataclass(frozen=True, eq=False)
+class _HalfProfile:
+    """Intensity along one direction from a region's centroid to where the highlight ends."""
+
+    values: NDArray
+    """(n,) at least the centroid's own."""
+    has_foot: bool
+    """The slope reached zero there; else a discontinuity or the end of the data cut it off."""
+
+
+def _half_profile(intensity: NDArray, known: Mask, centre: NDArray, step: NDArray, longest: float) -> _HalfProfile:
     """Intensity from the centroid outwards, until the slope gets to zero or breaks, or the data end."""
     path = np.rint(centre + np.arange(max(2, int(longest / np.hypot(*step))))[:, None] * step).astype(int)
     inside = ((path >= 0) & (path < known.shape)).all(axis=1)
     path = path[: _first(~inside)]
-    path = path[: _first(~known[path[:, 0], path[:, 1]])]
+    path = path[: max(1, _first(~known[path[:, 0], path[:, 1]]))]
     values = intensity[path[:, 0], path[:, 1]]
     if len(values) <= FLAT_RUN:
-        return values[:1]
+        return _HalfProfile(values[:1], has_foot=False)
     broken = _first(np.abs(np.diff(values)) > DISCONTINUITY)
     descending = values[:-FLAT_RUN] - values[FLAT_RUN:] > FLAT
     below_top = values[0] - values[:-FLAT_RUN] > 2 * FLAT  # the clipped top is flat, too
-    return values[: min(broken, _first(below_top & ~descending)) + 1]
+    flat = _first(below_top & ~descending)
+    return _HalfProfile(values[: min(broken, flat) + 1], has_foot=flat < min(broken, len(descending)))
 
 
 def _first(mask: NDArray[np.bool_]) -> int:
@@ -154,6 +163,14 @@ def _fill_spline(regions: NDArray[np.uint8], contour: NDArray[np.float64]) -> No
     closed = np.concatenate([contour, contour[:1]])
     outline = CubicSpline(np.arange(9), closed, bc_type="periodic")(np.linspace(0, 8, 129)[:-1])
     cv2.fillPoly(regions, [np.rint(outline[:, ::-1]).astype(np.int32)], 1)
+
+
+def _repaired(image: Orthoimage, found: Mask) -> Image:
+    """The colour with the highlights filled in, and nothing bled in from where no colour is known."""
+    if not found.any():
+        return image.colour
+    filled = inpaint(nearest(image.colour, image.coloured), found)
+    return np.where(image.coloured[..., None], filled, np.uint8(0))
 
 
 def inpaint(colour: Image, mask: Mask, radius_px: int = 5) -> Image:

@@ -99,7 +99,9 @@ def wall_boxes(layout: Layout) -> list[Box]:
         low = 0.0
         for bottom, top in [*inside, (layout.height, layout.height)]:
             if bottom > low:
-                boxes.append(_from_to((a, low, -WALL_THICKNESS), (b, bottom, 0.0), layout.wall_colour, layout.wall_gloss))
+                boxes.append(
+                    _from_to((a, low, -WALL_THICKNESS), (b, bottom, 0.0), layout.wall_colour, layout.wall_gloss)
+                )
             low = max(low, top)
     return boxes
 
@@ -128,11 +130,23 @@ def door_boxes(door: DoorSpec) -> list[Box]:
     sign = 1.0 if door.hinge == "left" else -1.0
     axis_u = door.left if door.hinge == "left" else door.right
     angle = np.deg2rad(door.angle_deg) * (1 if door.inward else -1)
-    parts = [((door.width / 2, door.height / 2 + 0.004, 0.0), (door.width / 2, door.height / 2 - 0.004, thick / 2), door.colour)]
+    parts = [
+        (
+            (door.width / 2, door.height / 2 + 0.004, 0.0),
+            (door.width / 2, door.height / 2 - 0.004, thick / 2),
+            door.colour,
+        )
+    ]
     if door.panels:
         darker = tuple(0.93 * c for c in door.colour)
         for low, high in ((0.25, 0.95), (1.1, door.height - 0.14)):
-            parts.append(((door.width / 2, (low + high) / 2, 0.0), (door.width / 2 - 0.13, (high - low) / 2, thick / 2 + 0.004), darker))
+            parts.append(
+                (
+                    (door.width / 2, (low + high) / 2, 0.0),
+                    (door.width / 2 - 0.13, (high - low) / 2, thick / 2 + 0.004),
+                    darker,
+                )
+            )
     for (along, v, _), half, colour in parts:
         across = -thick / 2 if door.inward else thick / 2
         u = axis_u + sign * (along * np.cos(angle) - across * np.sin(angle))
@@ -220,7 +234,13 @@ def labels_of(layout: Layout, scans: Sequence[tuple], size: float = 0.2) -> NDAr
 
 
 def make_room(
-    layout: Layout, *, step_deg: float = 0.2, seed: int = 0, yaw: float = 0.0, shift=(0.0, 0.0, 0.0), jitter: float = 0.002
+    layout: Layout,
+    *,
+    step_deg: float = 0.2,
+    seed: int = 0,
+    yaw: float = 0.0,
+    shift=(0.0, 0.0, 0.0),
+    jitter: float = 0.002,
 ) -> Room:
     """The room of a layout, turned by `yaw` [rad] and shifted in the world."""
     rng = np.random.default_rng(seed)
