@@ -64,9 +64,10 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
 
     The state is the keyframe's of that name, else the first keyframe, else qpos0. MoPAD starts at a site named
     `start`, else at the freest spot inside a room; a scene that already holds a MoPAD keeps it where it is. Doors stay
-    where they are put, as if wedged. The scene's own options stay, except for what driving needs: gravity (where there
-    was none, the scene's own bodies go on floating), contacts and actuation, the implicitfast integrator, at most 4 ms
-    a step, and a plane to drive on where the floor is a picture only.
+    where they are put, as if wedged. The scene's own options stay, except for what driving needs: the earth's gravity
+    (where there was none, the scene's own bodies go on floating) and no water, contacts at the surface and actuation,
+    the implicitfast integrator and a solver that converges, at most 4 ms a step, and a plane to drive on where the
+    floor is a picture only.
 
     Args:
         path: the MJCF file.
@@ -144,7 +145,7 @@ def _attach_robot(spec: mujoco.MjSpec) -> str:
 
 
 def _make_drivable(spec: mujoco.MjSpec, prefix: str) -> None:
-    """Gives the physics what a driving robot needs, and leaves everything else as the user has it."""
+    """Gives the physics what a robot that drives on earth needs, and leaves everything else as the user has it."""
     bits = mujoco.mjtDisableBit
     no_gravity = bool(spec.option.disableflags & bits.mjDSBL_GRAVITY) or spec.option.gravity[2] > -1.0
     if no_gravity:
@@ -152,19 +153,31 @@ def _make_drivable(spec: mujoco.MjSpec, prefix: str) -> None:
         for body in spec.bodies[1:]:
             if not body.name.startswith(prefix):
                 body.gravcomp = 1.0
-        spec.option.gravity = _GRAVITY
+    spec.option.gravity = _GRAVITY
+    spec.option.density = spec.option.viscosity = 0.0
     needed = (
         bits.mjDSBL_GRAVITY,
         bits.mjDSBL_CONTACT,
         bits.mjDSBL_CONSTRAINT,
         bits.mjDSBL_ACTUATION,
         bits.mjDSBL_LIMIT,
+        bits.mjDSBL_FRICTIONLOSS,
+        bits.mjDSBL_DAMPER,
     )
     for bit in needed:
         spec.option.disableflags &= ~int(bit)
+    spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_OVERRIDE)
+    usual = mujoco.MjSpec()  # with fewer iterations than MuJoCo's own the tracks slip
+    spec.option.solver = usual.option.solver
+    spec.option.iterations = max(spec.option.iterations, usual.option.iterations)
+    spec.option.ls_iterations = max(spec.option.ls_iterations, usual.option.ls_iterations)
+    spec.option.tolerance = min(spec.option.tolerance, usual.option.tolerance)
+    spec.compiler.settotalmass = usual.compiler.settotalmass  # of the scene: the robot would become lighter, too
     if spec.option.integrator != mujoco.mjtIntegrator.mjINT_IMPLICIT:
         spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.timestep = min(spec.option.timestep, _LONGEST_STEP)
+    for geom in spec.geoms:
+        geom.margin = 0.0  # the robot would hover over its start by as much
     if _GROUND not in {geom.name for geom in spec.geoms}:
         plane = mujoco.mjtGeom.mjGEOM_PLANE
         last = spec.worldbody.add_body(name=_GROUND)  # after all others, so that the scene's geoms keep their numbers
@@ -217,7 +230,7 @@ def _free_from_hulls(model: mujoco.MjModel, data: mujoco.MjData, bodies: frozens
     MuJoCo collides with a mesh's hull: in a room that is one mesh the robot would be inside a solid block, and a wall
     with a hole would push the leaf out of it.
     """
-    for geom in _deep_contacts(model, data, bodies):
+    for geom in sorted(set(_deep_contacts(model, data, bodies))):
         if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and model.body_weldid[model.geom_bodyid[geom]] == 0:
             log.warning("%s would collide by its convex hull: nothing collides with it", geom_name(model, geom))
             model.geom_contype[geom] = model.geom_conaffinity[geom] = 0

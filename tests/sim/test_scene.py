@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from sim.errors import SimError
+from sim.robot import Robot, RobotParameters
 from sim.scene import Scene, load_scene
 
 WALLS = """
@@ -105,6 +106,9 @@ def test_without_keyframes_qpos0_is_the_state(tmp_path: Path) -> None:
         '<default><default class="roller"><geom size="9" type="sphere"/></default></default>',
         '<asset><material name="rubber"/></asset><option timestep="0.01" integrator="RK4" cone="elliptic"/>',
         '<option gravity="0 0 0"><flag contact="disable" actuation="disable"/></option>',
+        '<option gravity="0 0 -1.6" solver="PGS" iterations="1" tolerance="0.1"/>',
+        '<option density="1000" viscosity="0.001" o_margin="0.05"><flag override="enable"/></option>',
+        '<compiler settotalmass="20"/><default><geom margin="0.02"/></default>',
     ],
 )
 def test_mopad_is_the_same_whatever_the_scene_s_own_settings(tmp_path: Path, compiler: str) -> None:
@@ -144,6 +148,19 @@ def test_mopad_is_not_crushed_by_the_convex_hull_of_a_room_that_is_one_mesh(tmp_
     scene = load(tmp_path, '<geom name="shell" type="mesh" mesh="shell"/><site name="start" pos="1 0 0"/>', extra=SHELL)
     mujoco.mj_step(scene.model, scene.data, 500)
     np.testing.assert_allclose(scene.data.body("mopad/base").xpos, [1, 0, 0], atol=0.003)
+
+
+def test_mopad_drives_as_commanded_where_the_scene_s_own_solver_would_let_it_slip(tmp_path: Path) -> None:
+    scene = load(
+        tmp_path, ROOM, extra='<option solver="PGS" iterations="1" timestep="0.01" density="1000" wind="3 3 0"/>'
+    )
+    robot = Robot(scene, RobotParameters(), np.random.default_rng(0))
+    robot.settle()
+    start = robot.true_world_from_base
+    robot.step(0.3, 0.0, 2.0)
+    way = (np.linalg.inv(start) @ robot.true_world_from_base)[:3, 3]
+    # 0.3 m/s for 2 s less the time to get there; the odometry's drift is a few percent
+    assert 0.45 < way[0] < 0.6 and abs(way[1]) < 0.02 and abs(way[2]) < 0.003
 
 
 def test_floating_things_of_a_scene_without_gravity_go_on_floating(tmp_path: Path) -> None:
