@@ -24,6 +24,10 @@ from mission.events import (
 )
 
 
+_WIDTHS = {"door": 5, "state": 9, "size [m]": 11}
+"""Of the columns of the table of doors, so that it fits 80 columns; numbers take 6."""
+
+
 class TerminalProgress:
     """A sink that tells a person what goes on."""
 
@@ -97,10 +101,13 @@ def doors_table(event: DoorsEvaluated) -> Table:
     """Each door beside its joint, and the doors that were missed."""
     count = len(event.doors)
     title = f"Room {event.room}: {count} door{'s' * (count != 1)}"
-    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for column in ("door", "state", "size [m]", "angle", "joint", "error", "precision", "recall", "true door"):
-        justify = "left" if column in {"door", "state", "true door"} else "right"
-        table.add_column(column, justify=justify, no_wrap=True)  # type: ignore[arg-type]
+    table = Table(
+        title=title, title_justify="left", box=SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0)
+    )
+    for column in ("door", "state", "size [m]", "angle", "joint", "error", "prec.", "recall"):
+        right = column not in {"door", "state"}
+        table.add_column(column, justify="right" if right else "left", no_wrap=True, min_width=_WIDTHS.get(column, 6))
+    table.add_column("true door", overflow="fold")
     for door in event.doors:
         table.add_row(*_row(door))
     for name in event.missed:
@@ -113,7 +120,7 @@ def _row(evaluation: DoorEvaluation) -> list[str]:
     return [
         evaluation.door_id,
         door.state if door.kind == "single" else f"{door.state}, {door.kind}",
-        f"{door.rectangle.width:.3f} x {door.rectangle.height:.3f}",
+        f"{door.rectangle.width:.3f}x{door.rectangle.height:.3f}",
         _degrees(door.opening_angle),
         _degrees(evaluation.true_angle),
         _degrees(evaluation.angle_error),
