@@ -24,10 +24,6 @@ from mission.events import (
 )
 
 
-_WIDTHS = {"door": 5, "state": 9, "size [m]": 11}
-"""Of the columns of the table of doors, so that it fits 80 columns; numbers take 6."""
-
-
 class TerminalProgress:
     """A sink that tells a person what goes on."""
 
@@ -106,7 +102,7 @@ def doors_table(event: DoorsEvaluated) -> Table:
     )
     for column in ("door", "state", "size [m]", "angle", "joint", "error", "prec.", "recall"):
         right = column not in {"door", "state"}
-        table.add_column(column, justify="right" if right else "left", no_wrap=True, min_width=_WIDTHS.get(column, 6))
+        table.add_column(column, justify="right" if right else "left", no_wrap=True)
     table.add_column("true door", overflow="fold")
     for door in event.doors:
         table.add_row(*_row(door))

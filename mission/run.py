@@ -32,6 +32,9 @@ logger = logging.getLogger(__name__)
 DONE, BELOW, BAD_INPUT, FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status."""
 
+LOG_WIDTH = 120
+"""Of what is printed where no terminal tells its width, such as on a CI machine."""
+
 METRICS = ("recall", "precision", "found", "coverage")
 """What --fail-under knows: larger is better, 1 is perfect."""
 
@@ -40,7 +43,8 @@ def run(options: argparse.Namespace) -> int:
     """Run a mission as the command line says and return the exit status."""
     start = perf_counter()
     logging.basicConfig(level=logging.ERROR, format="%(levelname)s %(name)s: %(message)s")
-    console = Console(stderr=True, quiet=options.quiet or options.json)
+    wide = None if sys.stderr.isatty() else LOG_WIDTH
+    console = Console(stderr=True, quiet=options.quiet or options.json, width=wide)
     try:
         bars = dict(_setting("--fail-under", text) for text in options.fail_under)
         _check_metrics(bars)
