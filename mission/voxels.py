@@ -34,6 +34,12 @@ class VoxelParameters(BaseModel):
     behind: float = Field(default=0.2, gt=0, description="a wall's voxel reaches this far behind its face [m]")
     before: float = Field(default=0.1, gt=0, description="a wall's voxel reaches this far into the room [m]")
     floor_clearance: float = Field(default=0.05, ge=0, description="below it points are floor or sill, not wall [m]")
+    maximum_incidence: float = Field(
+        default=float(np.deg2rad(78)),
+        gt=0,
+        lt=np.pi / 2,
+        description="seen flatter only, a wall's points are too far apart to show what is there [rad]",
+    )
     level_reach: float = Field(default=0.08, gt=0, description="points this near are floor or ceiling [m]")
     visibility: VisibilityParameters = Field(default_factory=VisibilityParameters)
 
@@ -108,11 +114,12 @@ def label_voxels(
     """
     parameters = parameters or VoxelParameters()
     points = np.concatenate([scan.points_in_world for scan in scans]).astype(float)
+    scanners = np.concatenate([np.broadcast_to(s.scanner_in_world, s.points_in_world.shape) for s in scans])
     visibility = Visibility(scans, parameters.visibility)
     walls = [_wall_patch(wall, parameters) for wall in structure.walls]
     grids = _levels(structure, parameters)
     patches = walls + [patch for _, patch in grids]
-    labels = [_labelled(patch, points, visibility, parameters) for patch in patches]
+    labels = [_labelled(patch, points, scanners, visibility, parameters) for patch in patches]
     levels = [
         LevelGrid(patch.corner, patch.u, patch.v, np.where(inside, level_labels, 0).astype(np.uint8))
         for (inside, patch), level_labels in zip(grids, labels[len(walls) :], strict=True)
@@ -228,19 +235,41 @@ def _levels(structure: Structure, parameters: VoxelParameters) -> list[tuple[NDA
     return found
 
 
-def _labelled(patch: _Patch, points: Floats, visibility: Visibility, parameters: VoxelParameters) -> Labels:
-    """(rows, columns) Occupied with a point; else Opening if some scan looked through; else Occluded."""
-    rows, columns = patch.areas.shape
-    size = parameters.size
-    along, across, depth = patch.coordinates(points)
-    near = (depth > -patch.behind) & (depth < patch.before) & (across < patch.clearance)
-    r, c = np.floor(across[near] / size).astype(int), np.floor(along[near] / size).astype(int)
-    within = (r >= 0) & (r < rows) & (c >= 0) & (c < columns)
-    labels = np.full((rows, columns), VoxelLabel.OCCLUDED, np.uint8)
-    labels[r[within], c[within]] = VoxelLabel.OCCUPIED
-    empty = (labels != VoxelLabel.OCCUPIED) & (patch.areas > 0)
-    labels[empty] = np.where(_looked_through(patch, empty, visibility, size), VoxelLabel.OPENING, VoxelLabel.OCCLUDED)
+def _labelled(
+    patch: _Patch, points: Floats, scanners: Floats, visibility: Visibility, parameters: VoxelParameters
+) -> Labels:
+    """(rows, columns) Occupied with a point; else Opening if some scan looked through; else Occluded.
+
+    A wall's voxel with points of grazing beams only is Occluded: a few lines of points show no door.
+    """
+    occupied, grazed = _filled(patch, points, scanners, parameters)
+    empty = ~occupied & ~grazed & (patch.areas > 0)
+    labels = np.where(occupied, VoxelLabel.OCCUPIED, VoxelLabel.OCCLUDED).astype(np.uint8)
+    labels[empty] = np.where(
+        _looked_through(patch, empty, visibility, parameters.size), VoxelLabel.OPENING, VoxelLabel.OCCLUDED
+    )
     return labels
+
+
+def _filled(
+    patch: _Patch, points: Floats, scanners: Floats, parameters: VoxelParameters
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Cells (rows, columns) with a point, and those with points of grazing beams only; (N, 3) where beams began."""
+    rows, columns = patch.areas.shape
+    along, across, depth = patch.coordinates(points)
+    near = np.flatnonzero((depth > -patch.behind) & (depth < patch.before) & (across < patch.clearance))
+    cell = np.floor(np.stack([across[near], along[near]]) / parameters.size).astype(int)
+    within = ((cell >= 0) & (cell < [[rows], [columns]])).all(axis=0)
+    near, cell = near[within], cell[:, within]
+    grazing = np.zeros(len(near), bool)
+    if abs(patch.normal[2]) < 0.5:
+        beams = scanners[near] - points[near]
+        steepness = np.abs(beams @ patch.normal) / np.sqrt(np.sum(beams**2, axis=1))
+        grazing = steepness < np.cos(parameters.maximum_incidence)
+    occupied, met = np.zeros((rows, columns), bool), np.zeros((rows, columns), bool)
+    occupied[tuple(cell[:, ~grazing])] = True
+    met[tuple(cell)] = True
+    return occupied, met & ~occupied
 
 
 def _looked_through(patch: _Patch, cells: NDArray[np.bool_], visibility: Visibility, size: float) -> NDArray[np.bool_]:

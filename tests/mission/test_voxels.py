@@ -84,6 +84,17 @@ def test_what_a_cabinet_hides_is_occluded_until_a_scan_sees_it() -> None:
     assert (after[6:12, 13:17] == OCCUPIED).all()
 
 
+def test_the_far_end_of_a_corridor_s_walls_is_occluded_until_a_scan_looks_at_it_less_flatly() -> None:
+    # 12 x 1.8 m: a scan at x = 2, 0.9 m from both walls, meets them at 78 deg at x = 2 + 0.9 tan 78 deg = 6.2.
+    corridor = plain_room(12.0, 1.8)
+    first = labels_of(modelled(corridor, (2, 0.9)), (0, -1))
+    both = labels_of(modelled(corridor, (2, 0.9), (8, 0.9)), (0, -1))
+
+    # the wall y = 1.8 starts at x = 0: columns from 31 lie beyond 6.2 m, though some beams end there; none is Opening
+    assert (first[:, 31:] == OCCLUDED).all() and (first[5:, 17:29] == OCCUPIED).all()
+    assert (both[5:, 47:] == OCCUPIED).all()  # 1.2 m from x = 8 nothing is nearer than the least range
+
+
 def test_what_stands_too_near_to_the_scanner_to_return_makes_no_opening() -> None:
     # A board 0.8 m away, within the minimum range of 1.5 m: the beams towards the wall behind return nothing.
     room = [*plain_room(), box((1, 1.2), (1.5, 2.9), (0, 1.9))]
