@@ -65,7 +65,7 @@ def fit_leaf(
     chosen = _slice(points, doorway, parameters)
     # what lies in the wall's own plane beside the doorway is wall
     chosen &= ~((np.abs(d) < 0.07) & ((r < 0.02) | (r > width - 0.01)))
-    chosen &= (np.hypot(r, d) < width + 0.45) & (r > -0.5)
+    chosen &= (np.hypot(r, d) < width + 0.8) & (r > -0.5)  # beyond the leaf, to tell a wall that goes on
     index = np.flatnonzero(chosen)
     index = index[:: 1 + len(index) // MAX_SLICE]
     if len(index) < MIN_POINTS:

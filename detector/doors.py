@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,6 +31,8 @@ ALIKE = 0.04
 """Rectangles whose sides all lie this close are readings of the same door [m]."""
 OTHER_LEAF = (0.4, 1.3)
 """Width of the second leaf of a double door [m]."""
+WELL_SET = 0.7
+"""Share of wall round a rectangle that leaves no doubt about its sides."""
 OPEN_SHARE = 0.15
 """A rectangle that is looked through over more than this share is open."""
 CLEAR_SUPPORT = 0.8
@@ -115,6 +119,7 @@ def judge(
                 side_support=tuple(float(s) for s in support[i]),
                 wall_share=float(wall[i]),
                 rejected_by=reason,
+                surroundings=float(around[i].min()),
             )
         )
     return _smallest(candidates)
@@ -171,9 +176,11 @@ def _smallest(candidates: list[Candidate]) -> tuple[Candidate, ...]:
             continue
         alike = [c for c in accepted if id(c) not in taken and _alike(c.rectangle, candidate.rectangle)]
         taken.update(id(c) for c in alike)
-        kept.append(max(alike, key=lambda c: (round(sum(c.side_support), 2), -c.rectangle.area)))
+        kept.append(
+            max(alike, key=lambda c: (c.surroundings > WELL_SET, round(sum(c.side_support), 2), -c.rectangle.area))
+        )
     kept.sort(key=lambda c: c.rectangle.left)
-    losers = [_rejected(c, "minimum size") for c in fulfilled if not any(c is k for k in kept)]
+    losers = [replace(c, rejected_by="minimum size") for c in fulfilled if not any(c is k for k in kept)]
     return (*kept, *losers, *(c for c in candidates if c.rejected_by is not None))
 
 
@@ -194,18 +201,6 @@ def _covers(outer: Rectangle, inner: Rectangle) -> bool:
     width = min(outer.right, inner.right) - max(outer.left, inner.left)
     height = min(outer.top, inner.top) - max(outer.bottom, inner.bottom)
     return width > 0 and height > 0 and width * height > 0.3 * min(outer.area, inner.area)
-
-
-def _rejected(candidate: Candidate, reason: str) -> Candidate:
-    """The same candidate, rejected."""
-    return Candidate(
-        candidate.rectangle,
-        candidate.dominant_colour_share,
-        candidate.dominant_depth_share,
-        candidate.side_support,
-        candidate.wall_share,
-        reason,
-    )
 
 
 def doorway_rectangles(search: DoorSearch) -> tuple[Rectangle, ...]:

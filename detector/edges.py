@@ -13,21 +13,21 @@ from detector.orthoimage import nearest
 from detector.parameters import DetectorParameters
 from detector.result import Image, Mask, Orthoimage
 
-ALONG_PX = 15
-"""Smoothing along a hypothetical side: sides are upright or level (section 5), so it blurs noise, not edges."""
-COLOUR_ALONG_PX = 31
-"""The same for colour, which is noisier against the steps that matter."""
+ALONG = 0.075
+"""Smoothing along a hypothetical side [m]: sides are upright or level (section 5), so it blurs noise, not edges."""
+COLOUR_ALONG = 0.155
+"""The same for colour, which is noisier against the steps that matter [m]."""
 NOISE_FACTOR = 4.0
 """A gradient below this many times the wall's median is texture."""
 GRADIENT_STEPS = 1000
 """Grey values per unit of gradient for Otsu's histogram; stronger gradients than 0.255 count as that."""
-CREASE_PX = 6
-"""Half length over which a change of slope is measured."""
+CREASE_REACH = 0.04
+"""Half length over which a change of slope is measured [m]."""
 SLOPE_NOISE = 8.0
 """How much less a step counts on a surface that slopes by one: the gaps between samples become steps there."""
 FLAT = 0.1
 """Slope along u up to which a surface counts as parallel to the wall: 6 deg."""
-CREASE = 0.005
+CREASE = 0.003
 """Deviation from a straight depth profile that is a crease [m]."""
 
 
@@ -64,7 +64,12 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
 def colour_derivatives(merged: Orthoimage) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """(H, W, 3) change of the colour (0..1) per pixel along the columns and down the rows."""
     colour = nearest(merged.colour, merged.coloured).astype(np.float32) / 255
-    return _derivatives(colour, COLOUR_ALONG_PX)
+    return _derivatives(colour, _odd(COLOUR_ALONG, merged.pixel_size))
+
+
+def _odd(length: float, pixel_size: float) -> int:
+    """An odd number of pixels about as long as a length [m]."""
+    return 2 * round(length / pixel_size / 2) + 1
 
 
 def _derivatives(image: NDArray[np.float32], along_px: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -118,8 +123,8 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
     filled = nearest(known, data | through)
     if not (data | through).any():
         return Relief(*(np.zeros_like(data) for _ in range(2)))
-    dx, dy = _derivatives(filled, ALONG_PX)
-    slope = _local_slope(dx)
+    dx, dy = _derivatives(filled, _odd(ALONG, pixel_size))
+    slope = _local_slope(dx, pixel_size)
     # the face of a half-open leaf slopes, and has no edges; its noise grows with the slope times the sample spacing
     trust = 1 / (1 + SLOPE_NOISE * np.abs(slope) / pixel_size)
     dx, dy = (dx - slope) * trust, dy * trust
@@ -132,7 +137,7 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
         L2gradient=True,
     )
     steps = found > 0
-    creases = _creases(filled, steps)
+    creases = _creases(filled, steps, pixel_size)
     near_data = cv2.dilate(data.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
     across = np.where(steps, np.abs(dx) >= np.abs(dy), creases)
     return Relief((steps | creases) & near_data, across)
@@ -144,27 +149,28 @@ def wall_face(view: Orthoimage, parameters: DetectorParameters) -> Mask:
     In the merged image the leaf of a wide open door hides wall that another view saw.
     """
     data = np.isfinite(view.depth)
-    dx, _ = _derivatives(nearest(view.depth, data), ALONG_PX)
-    flat = np.abs(_local_slope(dx)) <= FLAT * view.pixel_size
+    dx, _ = _derivatives(nearest(view.depth, data), _odd(ALONG, view.pixel_size))
+    flat = np.abs(_local_slope(dx, view.pixel_size)) <= FLAT * view.pixel_size
     return data & flat & (np.abs(np.where(data, view.depth, 0)) < parameters.slab_face)
 
 
-def _local_slope(dx: NDArray[np.float32]) -> NDArray[np.float32]:
+def _local_slope(dx: NDArray[np.float32], pixel_size: float) -> NDArray[np.float32]:
     """(H, W) steady part of the derivative along the columns: its running median, which no step moves."""
     from scipy.ndimage import median_filter
 
-    every = ALONG_PX // 2  # the derivative is already smooth down the rows
-    coarse = median_filter(dx[::every], (1, 2 * CREASE_PX + 1), mode="nearest")
+    every = _odd(ALONG, pixel_size) // 2 + 1  # the derivative is already smooth down the rows
+    coarse = median_filter(dx[::every], (1, _odd(2 * CREASE_REACH, pixel_size)), mode="nearest")
     return np.repeat(coarse, every, axis=0)[: len(dx)]
 
 
-def _creases(depth: NDArray[np.float32], steps: Mask) -> Mask:
+def _creases(depth: NDArray[np.float32], steps: Mask, pixel_size: float) -> Mask:
     """(H, W) True on the upright ridges of the change of slope, away from steps: the hinge of a half-open leaf."""
-    kernel = np.zeros((1, 2 * CREASE_PX + 1), np.float32)
-    kernel[0, [0, CREASE_PX, -1]] = -0.5, 1.0, -0.5
-    kernel = cv2.blur(kernel, (3, 1), borderType=cv2.BORDER_CONSTANT)
-    smooth = cv2.blur(depth, (1, 3 * ALONG_PX))
-    bend = np.abs(cv2.filter2D(smooth, cv2.CV_32F, kernel, borderType=cv2.BORDER_REPLICATE))
+    reach = max(2, round(CREASE_REACH / pixel_size))
+    kernel = np.zeros((1, 2 * reach + 3), np.float32)
+    kernel[0, :3], kernel[0, reach : reach + 3], kernel[0, -3:] = -1 / 6, 1 / 3, -1 / 6
+    along = _odd(3 * ALONG, pixel_size)
+    bend = np.abs(cv2.filter2D(cv2.blur(depth, (1, along)), cv2.CV_32F, kernel, borderType=cv2.BORDER_REPLICATE))
+    bend[:, : reach + 2] = bend[:, -reach - 2 :] = 0
     ridge = cv2.dilate(bend, np.ones((1, 5), np.uint8))
-    near_step = cv2.dilate(steps.astype(np.uint8), np.ones((3 * ALONG_PX, 2 * CREASE_PX - 1), np.uint8)) > 0
+    near_step = cv2.dilate(steps.astype(np.uint8), np.ones((along, 2 * reach - 1), np.uint8)) > 0
     return (bend > CREASE) & (bend == ridge) & ~near_step

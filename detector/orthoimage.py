@@ -16,7 +16,7 @@ LEAF_REACH = 1.7
 """How far from the wall an open leaf can stand [m]."""
 THINNED_TO = 600_000
 """Points of a view that are enough for shadows and leaves."""
-MAX_PASSED = 3_000_000
+MAX_PASSED = 1_500_000
 """Points behind the wall that are enough to outline its holes."""
 
 
@@ -77,13 +77,13 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
     points = view.points_in_world
     depth = points @ wall.normal.astype(np.float32) - np.float32(wall.origin @ wall.normal)
     near = np.flatnonzero((depth > -parameters.slab_behind) & (depth < parameters.slab_front))
-    slab = wall.wall_from_world(points[near])
+    slab = wall.wall_from_world(points.take(near, axis=0))
     inside = _inside(slab, wall) & (slab[:, 1] >= floor + parameters.floor_margin)
     if not inside.any():
         return None
     near, slab = near[inside], slab[inside]
     behind = np.flatnonzero(depth < -parameters.face_tolerance)
-    behind = wall.wall_from_world(points[behind[:: 1 + len(behind) // MAX_PASSED]])
+    behind = wall.wall_from_world(points.take(behind[:: 1 + len(behind) // MAX_PASSED], axis=0))
     thinned = wall.wall_from_world(points[:: 1 + 2 * (len(points) // (2 * THINNED_TO))])
     front = thinned[(thinned[:, 2] > parameters.slab_front) & (thinned[:, 2] < 0.98 * scanner[2])]
     reach = (np.abs(thinned[:, 2]) < LEAF_REACH) & (thinned[:, 0] > -LEAF_REACH)
@@ -91,7 +91,7 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
     beyond = behind[(behind[:, 2] > -LEAF_REACH) & (behind[:, 1] > floor + 0.1)]
     return WallPoints(
         slab=slab,
-        colours=view.colours[near],
+        colours=view.colours.take(near, axis=0),
         coloured=view.coloured[near],
         passed=_crossings(behind, scanner, wall),
         blocked=_crossings(front, scanner, wall),
@@ -103,7 +103,7 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
 
 def _inside(points: NDArray[np.float32], wall: Wall) -> NDArray[np.bool_]:
     """(N,) True over the wall's rectangle."""
-    u, v = points[:, 0], points[:, 1]
+    u, v = points[:, 0].copy(), points[:, 1].copy()
     return (u >= 0) & (u < wall.width) & (v >= 0) & (v < wall.height)
 
 

@@ -54,7 +54,7 @@ class DetectorParameters(BaseModel):
 
     # Section 6.1: wall area
     seed_size: int = Field(5, ge=2, le=25, description="side of a seed [px]; section 6.1")
-    max_seeds: int = Field(2000, ge=100, le=20_000, description="seeds are thinned regularly to about this many; ours")
+    max_seeds: int = Field(1200, ge=100, le=20_000, description="seeds are thinned regularly to about this many; ours")
     sigma_max: float = Field(0.2, gt=0, le=1, description="largest standard deviation within a seed; section 6.1")
     depth_scale: float = Field(0.1, gt=0, description="depth [m] that counts as much as black against white; ours")
     delta: float = Field(0.7, ge=-1, le=1, description="least silhouette of a seed that is kept; sections 6.1 and 8")
@@ -77,10 +77,7 @@ class DetectorParameters(BaseModel):
     min_height: float = Field(1.6, gt=0, description="lowest doorway [m]; ours")
     max_height: float = Field(2.6, gt=0, description="highest doorway [m]; ours")
     min_visible: float = Field(
-        0.45,
-        ge=0,
-        le=1,
-        description="least visible share of a doorway; ours: an open leaf hides more than the paper's 40 %",
+        0.35, ge=0, le=1, description="least visible share of a doorway; ours: an open leaf hides more than 40 %"
     )
     max_protrusion: float = Field(0.06, ge=0, description="a closed leaf stands out no further than this [m]; ours")
 

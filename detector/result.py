@@ -124,6 +124,8 @@ class Candidate:
     """Share of the rectangle that is wall area, condition 3."""
     rejected_by: str | None
     """Name of the first condition that the rectangle fails; None for a door."""
+    surroundings: float = 1.0
+    """Least share of wall along the outside of the left, top and right sides, as far as it is seen (ours)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -79,8 +79,10 @@ class Wall:
 
     def wall_from_world(self, points: NDArray[np.floating]) -> NDArray[np.floating]:
         """(N, 3) coordinates along u, along v and depth into the room [m], of points in the world frame."""
-        axes = np.stack([self.u, self.v, self.normal], axis=1).astype(points.dtype)
-        return (points - self.origin.astype(points.dtype)) @ axes
+        moved = np.empty(np.shape(points), points.dtype)
+        for i, axis in enumerate((self.u, self.v, self.normal)):  # three products run faster than one on (N, 3) rows
+            np.subtract(points @ axis.astype(points.dtype), points.dtype.type(self.origin @ axis), out=moved[:, i])
+        return moved
 
     def world_from_wall(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
         """(N, 3) points in the world frame [m], from coordinates along u, along v and depth."""

@@ -163,10 +163,11 @@ def cast(origin: NDArray, directions: NDArray, boxes: Sequence[Box]) -> tuple[ND
     for k, box in enumerate(boxes):
         c, s = np.cos(box.yaw), np.sin(box.yaw)
         axes = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])  # rows: the box's axes in (u, v, d)
-        o = axes @ (origin - np.array(box.centre))
-        d = directions @ axes.T.astype(np.float32)
+        o = (axes @ (origin - np.array(box.centre))).astype(np.float32)
+        d = directions if box.yaw == 0 else directions @ axes.T.astype(np.float32)
+        half = np.array(box.half, np.float32)
         with np.errstate(divide="ignore", invalid="ignore"):
-            t1, t2 = (-np.array(box.half) - o) / d, (np.array(box.half) - o) / d
+            t1, t2 = (-half - o) / d, (half - o) / d
         low, high = np.fmin(t1, t2), np.fmax(t1, t2)
         enter, leave = low.max(axis=1), high.min(axis=1)
         hit = (enter < leave) & (enter > 0.05) & (enter < best)
