@@ -117,7 +117,7 @@ def register(sample: ScanSample, guess: Pose, world: _Map, parameters: Registrat
             partners = _partners(points, normals, pose, world, reach)
             if len(partners.residuals) < 100:
                 return Registration(guess, 0.0, np.inf, False, f"fewer than 100 points meet the map within {reach} m")
-            step = _step(partners, scale=reach)
+            step = _step(partners, reach, final=reach == parameters.reaches[-1])
             pose = step @ pose
             if np.abs(step - np.eye(4)).max() < 1e-5:
                 break
@@ -180,10 +180,14 @@ def _partners(points: Points, normals: Points, pose: Pose, world: _Map, reach: f
     return _Partners(here[met], world.normals[partner], np.sum(offsets * world.normals[partner], axis=1))
 
 
-def _step(partners: _Partners, *, scale: float) -> Pose:
-    """The small motion that lessens the residuals, with Tukey weights of a width of `scale` or 3 robust sigmas."""
+def _step(partners: _Partners, reach: float, *, final: bool) -> Pose:
+    """The small motion that lessens the residuals, with Tukey weights as wide as 3 robust sigmas, at most the reach.
+
+    Before the final round they are at least a quarter of the reach: along a corridor most points fit from the start,
+    and the few at its ends that hold the way along it are no outliers.
+    """
     sigma = 1.4826 * float(np.median(np.abs(partners.residuals)))
-    width = max(min(scale, 4.685 * sigma), 1e-3)
+    width = max(min(reach, 4.685 * sigma), 1e-3 if final else reach / 4)
     weights = np.maximum(1 - (partners.residuals / width) ** 2, 0) ** 2
     middle = partners.points.mean(axis=0)  # rotate about the points: well conditioned far from the origin
     jacobian = np.concatenate([np.cross(partners.points - middle, partners.normals), partners.normals], axis=1)

@@ -97,6 +97,20 @@ def test_between_two_endless_walls_the_way_along_them_is_free_and_the_scan_rejec
     assert "direction free" in found.reason
 
 
+@pytest.mark.parametrize("along", [-0.15, 0.03, 0.08])
+def test_the_few_points_at_the_ends_of_a_corridor_hold_the_way_along_it(along: float) -> None:
+    # 12 x 1.8 m: its long walls, floor and ceiling fit from the start and say nothing about x; the ends do.
+    corridor = plain_room(12.0, 1.8)
+    registrar = Registrar()
+    registrar.register(sample_scan(scan(corridor, pose(3, 0.9), noise=0.003)), pose(3, 0.9))
+    found = registrar.register(
+        sample_scan(scan(corridor, pose(8, 0.8, 1.0), noise=0.003, seed=1)), pose(8 + along, 0.8, 1.0)
+    )
+
+    assert found.accepted, found.reason
+    assert error(found.world_from_scanner, pose(8, 0.8, 1.0))[0] < 0.003
+
+
 @pytest.mark.slow
 def test_one_core_and_two_give_the_same_bits() -> None:
     program = (
