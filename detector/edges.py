@@ -21,14 +21,12 @@ NOISE_FACTOR = 4.0
 """A gradient below this many times the wall's median is texture."""
 GRADIENT_STEPS = 1000
 """Grey values per unit of gradient for Otsu's histogram; stronger gradients than 0.255 count as that."""
-CREASE_REACH = 0.04
-"""Half length over which a change of slope is measured [m]."""
+SLOPE_REACH = 0.04
+"""Half length over which a slope is measured [m]."""
 SLOPE_NOISE = 8.0
 """How much less a step counts on a surface that slopes by one: the gaps between samples become steps there."""
 FLAT = 0.1
 """Slope along u up to which a surface counts as parallel to the wall: 6 deg."""
-CREASE = 0.003
-"""Deviation from a straight depth profile that is a crease [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +135,7 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
         L2gradient=True,
     )
     steps = found > 0
-    creases = _creases(filled, steps, pixel_size)
+    creases = _creases(slope, pixel_size)
     near_data = cv2.dilate(data.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
     across = np.where(steps, np.abs(dx) >= np.abs(dy), creases)
     return Relief((steps | creases) & near_data, across)
@@ -159,18 +157,18 @@ def _local_slope(dx: NDArray[np.float32], pixel_size: float) -> NDArray[np.float
     from scipy.ndimage import median_filter
 
     every = _odd(ALONG, pixel_size) // 2 + 1  # the derivative is already smooth down the rows
-    coarse = median_filter(dx[::every], (1, _odd(2 * CREASE_REACH, pixel_size)), mode="nearest")
+    coarse = median_filter(dx[::every], (1, _odd(2 * SLOPE_REACH, pixel_size)), mode="nearest")
     return np.repeat(coarse, every, axis=0)[: len(dx)]
 
 
-def _creases(depth: NDArray[np.float32], steps: Mask, pixel_size: float) -> Mask:
-    """(H, W) True on the upright ridges of the change of slope, away from steps: the hinge of a half-open leaf."""
-    reach = max(2, round(CREASE_REACH / pixel_size))
-    kernel = np.zeros((1, 2 * reach + 3), np.float32)
-    kernel[0, :3], kernel[0, reach : reach + 3], kernel[0, -3:] = -1 / 6, 1 / 3, -1 / 6
-    along = _odd(3 * ALONG, pixel_size)
-    bend = np.abs(cv2.filter2D(cv2.blur(depth, (1, along)), cv2.CV_32F, kernel, borderType=cv2.BORDER_REPLICATE))
-    bend[:, : reach + 2] = bend[:, -reach - 2 :] = 0
-    ridge = cv2.dilate(bend, np.ones((1, 5), np.uint8))
-    near_step = cv2.dilate(steps.astype(np.uint8), np.ones((along, 2 * reach - 1), np.uint8)) > 0
-    return (bend > CREASE) & (bend == ridge) & ~near_step
+def _creases(slope: NDArray[np.float32], pixel_size: float) -> Mask:
+    """(H, W) both pixels of each upright border between flat and sloping: the hinge of a half-open leaf.
+
+    The running median keeps such a border in place, and does not see steps.
+    """
+    sloping = np.abs(slope) > FLAT * pixel_size
+    changes = sloping[:, 1:] != sloping[:, :-1]
+    creases = np.zeros_like(sloping)
+    creases[:, 1:] |= changes
+    creases[:, :-1] |= changes
+    return creases
