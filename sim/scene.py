@@ -26,6 +26,8 @@ FOOTPRINT = (0.97, 0.57)
 _GROUND = f"{ROBOT_PREFIX}ground"
 _GROUND_BIT = 1 << 30
 """Collision bit of the plane that carries MoPAD where the scene's floor does not; MoPAD has all bits."""
+_LEAF_BIT = 1 << 29
+"""Likewise of the doors' leaves."""
 _ORIGIN_SITE = "beam_origin"
 _GRAVITY = (0.0, 0.0, -9.81)
 _LONGEST_STEP = 0.004
@@ -91,8 +93,9 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
     try:
         pose = _start_pose(model, data, prefix, robot_bodies, held is not None)
         set_base(model, data, prefix, pose)
-        leaves = [bodies_below(model, one.leaf.body) for door in doors for one in door.leaves]
-        _free_from_hulls(model, data, robot_bodies.union(*leaves))
+        leaves = frozenset[int]().union(*(bodies_below(model, one.leaf.body) for door in doors for one in door.leaves))
+        _free_from_hulls(model, data, robot_bodies | leaves)
+        _free_to_swing(model, data, leaves)
         _let_stand(model, data, robot_bodies, pose)
         _require_free(model, data, robot_bodies, pose)
     except SimError as error:
@@ -234,6 +237,15 @@ def _free_from_hulls(model: mujoco.MjModel, data: mujoco.MjData, bodies: frozens
         if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and model.body_weldid[model.geom_bodyid[geom]] == 0:
             log.warning("%s would collide by its convex hull: nothing collides with it", geom_name(model, geom))
             model.geom_contype[geom] = model.geom_conaffinity[geom] = 0
+    mujoco.mj_forward(model, data)
+
+
+def _free_to_swing(model: mujoco.MjModel, data: mujoco.MjData, leaves: frozenset[int]) -> None:
+    """Lets leaves collide with the robot only: drawn a little into its frame, a leaf would be flung open or shut."""
+    solid = np.isin(model.geom_bodyid, sorted(leaves)) & ((model.geom_contype != 0) | (model.geom_conaffinity != 0))
+    model.geom_contype[solid], model.geom_conaffinity[solid] = _LEAF_BIT, 0
+    bodies = np.unique(model.geom_bodyid[solid])
+    model.body_contype[bodies], model.body_conaffinity[bodies] = _LEAF_BIT, 0
     mujoco.mj_forward(model, data)
 
 

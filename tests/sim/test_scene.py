@@ -170,6 +170,33 @@ def test_floating_things_of_a_scene_without_gravity_go_on_floating(tmp_path: Pat
     assert scene.data.body("ball").xpos[2] == pytest.approx(2, abs=1e-6)
 
 
+DOOR_WALL = """
+<geom type="box" pos="-1.75 -2.05 1.25" size="1.25 0.05 1.25"/>
+<geom type="box" pos="1.75 -2.05 1.25" size="1.25 0.05 1.25"/>
+<geom type="box" pos="0 -2.05 2.3" size="0.5 0.05 0.2"/>"""
+"""Instead of the south wall: an opening 1.0 m wide and 2.1 m high."""
+LEAF = """<body name="leaf" pos="-0.5 -2 0"><joint axis="0 0 1" range="0 175" damping="1"/>
+  <geom name="leaf" type="box" pos="0.5 -0.02 1.05" size="0.515 0.02 1.06" density="300"/></body>"""
+"""1.5 cm wider than its opening on both sides: into its jambs, its lintel and the floor."""
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 170])
+def test_a_leaf_drawn_into_its_frame_stays_where_it_is_put(tmp_path: Path, degrees: float) -> None:
+    house = WALLS.replace('name="south" type="box" pos="0 -2.05 1.25"', 'name="s" type="box" pos="0 -9 1.25"') + FLOOR
+    scene = load(tmp_path, house + DOOR_WALL + LEAF, door_angles={"leaf": np.radians(degrees)})
+    mujoco.mj_step(scene.model, scene.data, 1000)
+    (door,) = scene.true_doors()
+    assert np.degrees(door.leaves[0].opening_angle) == pytest.approx(degrees, abs=0.05)
+
+
+def test_the_robot_still_bumps_into_a_leaf(tmp_path: Path) -> None:
+    house = WALLS.replace('name="south" type="box" pos="0 -2.05 1.25"', 'name="s" type="box" pos="0 -9 1.25"') + FLOOR
+    site = '<site name="start" pos="0 -1.3 0" euler="0 0 -90"/>'
+    robot = Robot(load(tmp_path, house + DOOR_WALL + LEAF + site), RobotParameters(), np.random.default_rng(0))
+    robot.step(0.3, 0.0, 2.0)
+    assert "leaf" in robot.contacts()
+
+
 def test_a_scene_that_already_holds_a_mopad_keeps_it_where_it_is(tmp_path: Path) -> None:
     first = load(tmp_path, ROOM)
     spec = mujoco.MjSpec.from_string(first.xml)
