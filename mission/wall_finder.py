@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from mission.errors import MissionError
 from mission.plan_lines import Columns, LineParameters, PlanLine, columns_of, find_lines
 from mission.plan_polygon import OPEN, Loop, Segment, covered_share, crossed, room_loops
+from mission.roof import Roof
 from mission.visibility import Visibility
 
 Floats = NDArray[np.float64]
@@ -20,6 +21,10 @@ Floats = NDArray[np.float64]
 
 _NEAR = 0.02
 """A wall that ends this near to a corner ends there [m]."""
+
+
+_BEFORE = 0.3
+"""Overhead is looked this far before a wall: clear of the lintels in it [m]."""
 
 
 class WallParameters(BaseModel):
@@ -31,6 +36,7 @@ class WallParameters(BaseModel):
     doorway: float = Field(default=1.5, ge=0, description="a gap in a wall up to this wide is bridged [m]")
     hidden_gap: float = Field(default=4.0, ge=0, description="bridged up to this if nobody looked through it [m]")
     least_lintel: float = Field(default=1.8, gt=0, description="above the floor: lower it hangs on a wall [m]")
+    least_roof: float = Field(default=1.0, gt=0, description="area of what a wall may end under, if lower [m2]")
     widest_lintel: float = Field(default=2.5, gt=0, description="over a doorway: wider it is a beam [m]")
     lines: LineParameters = Field(default_factory=LineParameters)
 
@@ -83,6 +89,7 @@ class WallFinder:
         self.visibility, self.parameters = visibility, parameters
         self.scanners = np.array([scan.scanner_in_world[:2] for scan in visibility.scans])
         vertical = (np.abs(normals[:, 2]) < 0.15) & (points[:, 2] > floor + 0.1)
+        self.roof = Roof(points, normals, lowest=floor + parameters.least_top, least_area=parameters.least_roof)
         self.lines = find_lines(points[vertical, :2], normals[vertical, :2], parameters.lines)
 
     def outline(self, ceiling: float | None) -> Outline:
@@ -115,10 +122,12 @@ class WallFinder:
         return Outline(tuple(walls), tuple(loops))
 
     def _reaching(self, line: PlanLine, columns: Columns, top: float) -> Columns:
-        """Columns that may be wall: up to the top, with nothing like them close behind, and nothing free under them
-        but what may be a doorway; so a beam or a hanging cupboard is none."""
-        band = self.parameters.lines.top_band
-        columns = columns.chosen((columns.tops > top - band) & (columns.rows >= 2) & ~columns.recessed)
+        """Columns that may be wall: up to the top or the roof over them, with nothing like them close behind, and
+        nothing free under them but what may be a doorway; so a beam or a hanging cupboard is none."""
+        columns = columns.chosen((columns.rows >= 2) & ~columns.recessed)
+        before = line.at((columns.numbers + 0.5) * self.parameters.lines.column) + _BEFORE * line.normal
+        tops = np.minimum(self.roof.height_over(before), top)
+        columns = columns.chosen(columns.tops > tops - self.parameters.lines.top_band)
         hanging = self._free_below(line, columns)
         lintel = hanging & (columns.bottoms > self.floor + self.parameters.least_lintel)
         widest = self.parameters.widest_lintel / self.parameters.lines.column

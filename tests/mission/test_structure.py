@@ -52,6 +52,14 @@ def level(structure: Structure) -> list[tuple[tuple[float, ...], float]]:
 RECTANGLE = [(0.0, 0.0), (0.0, 4.0), (6.0, 0.0), (6.0, 4.0)]
 
 
+def test_a_wall_under_a_lowered_ceiling_is_a_wall_and_the_step_overhead_is_none() -> None:
+    # Along y = 4 the ceiling is 40 cm lower, 1 m wide: that wall ends at 2.2 m, the others at 2.6 m.
+    structure = find_structure(scanned([*plain_room(), box((0, 6), (3, 4), (2.2, 2.6))], (2, 1.5), (4, 2)))
+
+    assert corners(structure) == RECTANGLE
+    assert structure.ceiling_height == pytest.approx(2.6, abs=0.001)
+
+
 def test_a_turned_and_shifted_room_gets_its_four_walls_to_a_millimetre_and_a_twentieth_of_a_degree() -> None:
     structure = find_structure(scanned(plain_room(), (2, 1.5), (4, 2.5)))
 
