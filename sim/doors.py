@@ -82,7 +82,7 @@ def find_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Door, ...]:
     A leaf is a slab of a door's size (see `sim.leaves`). It is a door's if at some joint position it stands on the
     floor in an opening of the static geometry that is passable behind it: that position is "closed". A refrigerator's
     or a wardrobe's door closes nothing that leads anywhere. Two leaves that fill an opening only together are one
-    double door.
+    double door; one of them may be narrower than a door.
 
     Args:
         model: the compiled scene, with or without the robot.
@@ -91,10 +91,12 @@ def find_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Door, ...]:
     moving = frozenset(np.flatnonzero(model.body_weldid != 0).tolist())
     rays = Rays(model, data, moving)
     leaves = find_leaves(model, data)
-    singles = [(leaf, close_single(model, rays, leaf)) for leaf in leaves]
+    singles = [(leaf, close_single(model, rays, leaf) if leaf.is_door_wide else None) for leaf in leaves]
     doors = [Door((single,)) for _, single in singles if single]
     paired: set[int] = set()
     for first, second in combinations([leaf for leaf, single in singles if not single], 2):
+        if not (first.is_door_wide or second.is_door_wide):
+            continue
         if not paired & {first.joint, second.joint} and (pair := close_pair(model, rays, first, second)):
             doors.append(Door(pair))
             paired |= {first.joint, second.joint}

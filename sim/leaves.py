@@ -14,6 +14,8 @@ HEIGHTS = (1.6, 2.6)
 """Least and greatest height of a door leaf [m]."""
 WIDTHS = (0.5, 1.5)
 """Least and greatest width of a door leaf [m]."""
+NARROWEST_SECOND = 0.25
+"""Least width of the second, usually bolted leaf of a double door [m]."""
 THICKEST = 0.15
 """Greatest thickness of a door leaf, handles left out [m]."""
 _AXIS_TOLERANCE = np.radians(5.0)
@@ -48,6 +50,12 @@ class Leaf:
     """(3,) unit vector of the joint's axis in world."""
     value: float
     """The joint's position at which `slab` was measured [rad or m]."""
+
+    @property
+    def is_door_wide(self) -> bool:
+        """Whether it can be a door of its own, not just the narrow leaf of a double door."""
+        first, second = self.slab.corners_in_world[:2]
+        return float(np.linalg.norm(second - first)) >= WIDTHS[0]
 
     def corners_at(self, value: float) -> np.ndarray:
         """The slab's corners (4, 3) in world with the joint at a position [rad or m]."""
@@ -120,7 +128,7 @@ def _slab(
     along = np.cross([0, 0, 1.0], facing)
     u, z = panel @ along, panel[:, 2]
     width, height, thickness = np.ptp(u), np.ptp(z), front - back
-    fits = WIDTHS[0] <= width <= WIDTHS[1] and HEIGHTS[0] <= height <= HEIGHTS[1] and thickness <= THICKEST
+    fits = NARROWEST_SECOND <= width <= WIDTHS[1] and HEIGHTS[0] <= height <= HEIGHTS[1] and thickness <= THICKEST
     if not fits or area[flat].sum() / 2 < _LEAST_FILL * width * height:
         return None
     near, far = (u.min(), u.max()) if abs(u.min()) <= abs(u.max()) else (u.max(), u.min())

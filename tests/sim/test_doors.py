@@ -148,6 +148,24 @@ def test_two_leaves_that_fill_one_opening_are_one_double_door() -> None:
     np.testing.assert_allclose([leaf.swing_normal[1] for leaf in door.leaves], [-1, -1], atol=1e-6)
 
 
+UNEQUAL = """
+    <body name="wide" pos="-0.65 0 0"><joint axis="0 0 1" range="-100 0"/>
+      <geom type="box" pos="0.45 0.03 1.05" size="0.447 0.02 1.045"/></body>
+    <body name="narrow" pos="0.65 0 0"><joint axis="0 0 1" range="0 100"/>
+      <geom type="box" pos="-0.2 0.03 1.05" size="0.197 0.02 1.045"/></body>"""
+
+
+def test_the_second_leaf_of_a_double_door_may_be_narrower_than_a_door() -> None:
+    door = only(true_doors(*world(UNEQUAL, gap=(-0.653, 0.653))))
+    assert door.name == "wide+narrow"
+    np.testing.assert_allclose(np.ptp(door.corners_in_world[:, 0]), 1.3, atol=0.01)
+
+
+def test_a_narrow_leaf_alone_is_a_flap_and_no_door() -> None:
+    narrow = UNEQUAL[UNEQUAL.index('<body name="narrow"') :]
+    assert true_doors(*world(narrow, gap=(0.247, 0.653))) == ()
+
+
 def test_a_sliding_leaf_on_the_wall_s_face_covers_its_opening_when_closed() -> None:
     leaf = """
     <body name="slider" pos="0 -0.04 0"><joint name="rail" type="slide" axis="1 0 0" range="0 1"/>
