@@ -70,7 +70,9 @@ def drive(
     localise: Callable[[Sequence[LaserScan], NDArray[np.float64]], NDArray[np.float64]] | None = None,
     watch: Callable[[], None] = lambda: None,
 ) -> Drive:
-    """Drive along a path until its end, or until the Hokuyos see the way blocked, or nothing moves any more.
+    """Drive along a path until its end, or until something is touched or seen in the way, or nothing moves any more.
+
+    What the robot touches already when the leg begins does not end it, provided that the leg leads away from it.
 
     Args:
         robot: Is moved.
@@ -84,6 +86,7 @@ def drive(
     correction = np.eye(4) if world_from_odometry is None else world_from_odometry
     log = _Log(path, watch, parameters.laser_every)
     command = Command(0.0, 0.0, 1)
+    began, held = robot.time, set(robot.contacts())
     best, since, matched = np.inf, robot.time, robot.time
     while True:
         scans, pose = measure(), correction @ robot.odometry
@@ -91,7 +94,9 @@ def drive(
             pose, matched = localise(scans, pose), robot.time
             correction = pose @ np.linalg.inv(robot.odometry)
         log.note(robot.time, pose, scans)
-        if touched := robot.contacts():
+        touched = set(robot.contacts())
+        held &= touched
+        if touched - held or (held and robot.time - began > parameters.release):
             return log.closed("contact", f"touched {', '.join(sorted(touched))}")
         wanted = follow_path(path, pose, target=command.target, parameters=parameters)
         if wanted.target == len(path):

@@ -102,10 +102,23 @@ def test_a_robot_that_does_not_move_is_stuck_after_thirty_seconds() -> None:
 
 def test_a_touch_ends_the_drive_and_names_what_was_touched() -> None:
     robot = Unicycle(pose(0, 0))
+    path = np.array([[0.0, 0.0], [2.0, 0.0]])
+
+    def bump() -> None:
+        robot.touching = ["chair"] if robot.true[0, 3] > 1.0 else []
+
+    driven = drive(robot, path, hokuyos(robot, []), footprint=FOOTPRINT, watch=bump)
+    assert driven.outcome == "contact"
+    assert "chair" in driven.reason
+    assert 1.0 < robot.true[0, 3] < 1.1  # within two ticks of 3 cm
+
+
+def test_a_touch_that_a_leg_starts_with_and_does_not_leave_behind_ends_it() -> None:
+    robot = Unicycle(pose(0, 0))
     robot.touching = ["chair"]
     driven = drive(robot, np.array([[0.0, 0.0], [2.0, 0.0]]), hokuyos(robot, []), footprint=FOOTPRINT)
     assert driven.outcome == "contact"
-    assert "chair" in driven.reason
+    assert robot.time == pytest.approx(1.05, abs=0.1)  # a tick or so after the second that it had
 
 
 def test_a_robot_turns_on_the_spot_only_if_its_corners_find_room() -> None:
