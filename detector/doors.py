@@ -27,12 +27,14 @@ from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rect
 
 LINE_SHARE = 0.45
 """Share of the window that a line covers at least: of the shortest side of a door, with occlusion."""
-ALIKE = 0.04
+ALIKE = 0.045
 """Rectangles whose sides all lie this close are readings of the same door [m]."""
 OTHER_LEAF = (0.4, 1.3)
 """Width of the second leaf of a double door [m]."""
-WELL_SET = 0.7
-"""Share of wall round a rectangle that leaves no doubt about its sides."""
+FAIRLY_SET, WELL_SET = 0.5, 0.7
+"""Least share of wall along each side's outside, and the share that leaves no doubt about the side."""
+SUPPORT_SLACK = 0.15
+"""Sums of support that differ by less do not tell which of two lines is the side."""
 OPEN_SHARE = 0.15
 """A rectangle that is looked through over more than this share is open."""
 CLEAR_SUPPORT = 0.8
@@ -98,7 +100,7 @@ def judge(
         ("location consistency", wall > parameters.alpha3),
         ("panel occlusion", visible < parameters.min_visible),
         ("floor", feet.min(axis=1) < FOOT_SUPPORT),
-        ("surroundings", around.min(axis=1) < 0.5),
+        ("surroundings", around.min(axis=1) < FAIRLY_SET),
     )
     for name, failed in checks:
         reasons[(reasons == None) & failed] = name  # noqa: E711 - elementwise
@@ -176,9 +178,7 @@ def _smallest(candidates: list[Candidate]) -> tuple[Candidate, ...]:
             continue
         alike = [c for c in accepted if id(c) not in taken and _alike(c.rectangle, candidate.rectangle)]
         taken.update(id(c) for c in alike)
-        kept.append(
-            max(alike, key=lambda c: (c.surroundings > WELL_SET, round(sum(c.side_support), 2), -c.rectangle.area))
-        )
+        kept.append(_best_reading(alike))
     kept.sort(key=lambda c: c.rectangle.left)
     losers = [replace(c, rejected_by="minimum size") for c in fulfilled if not any(c is k for k in kept)]
     return (*kept, *losers, *(c for c in candidates if c.rejected_by is not None))
@@ -187,6 +187,13 @@ def _smallest(candidates: list[Candidate]) -> tuple[Candidate, ...]:
 def _alike(a: Rectangle, b: Rectangle) -> bool:
     """Whether all sides lie within a few centimetres."""
     return max(abs(a.left - b.left), abs(a.right - b.right), abs(a.top - b.top)) < ALIKE
+
+
+def _best_reading(alike: list[Candidate]) -> Candidate:
+    """The smallest of those readings of one door that are well set in wall and supported as well as any."""
+    alike = [c for c in alike if c.surroundings > WELL_SET] or alike
+    support = max(sum(c.side_support) for c in alike)
+    return min((c for c in alike if sum(c.side_support) > support - SUPPORT_SLACK), key=lambda c: c.rectangle.area)
 
 
 def _is_leaf_of(leaf: Rectangle, whole: Rectangle) -> bool:
