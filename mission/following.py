@@ -39,6 +39,9 @@ class DrivingParameters(BaseModel):
     )
     patience: float = Field(default=30.0, gt=0.0, le=600.0, description="Without progress for so long: stuck [s]")
     progress: float = Field(default=0.05, gt=0.0, le=1.0, description="What counts as progress along the path [m]")
+    halt: float = Field(
+        default=3.0, gt=0.0, le=30.0, description="Braking at the end of a leg takes so long at most [s]"
+    )
     release: float = Field(
         default=1.0, ge=0.0, le=10.0, description="A leg that starts at a touch must be free of it after so long [s]"
     )

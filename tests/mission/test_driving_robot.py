@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from mission.driving import drive
@@ -13,6 +14,7 @@ from mission.grid import Footprint
 from sim.hokuyo import Hokuyo, LaserScan
 from sim.robot import Robot, RobotParameters
 from sim.scene import Scene, load_scene
+from tests.mission.driving_world import FOOTPRINT, Unicycle, pose
 
 HALL = """
 <mujoco>
@@ -66,3 +68,38 @@ def test_after_a_touch_the_robot_drives_away_from_what_it_touched(tmp_path: Path
     assert (
         robot.true_world_from_base[0, 3] < -0.4
     )  # the tolerance is 5 cm, and wheels that pushed have slipped a little
+
+
+def test_at_the_end_of_a_leg_the_robot_stands_where_the_record_ends(tmp_path: Path) -> None:
+    scene, robot = hall(tmp_path)
+    truth: list[NDArray[np.float64]] = []
+    leg = drive(
+        robot,
+        way(robot, 1.0),
+        hokuyos(scene, robot),
+        footprint=Footprint(*robot.footprint),
+        watch=lambda: truth.append(robot.true_world_from_base),
+    )
+    assert leg.outcome == "arrived"
+    assert abs(scene.data.qvel).max() < 1e-3  # a tenth of a millimetre in a tick
+    np.testing.assert_array_equal(leg.world_from_base[-1], robot.odometry)
+    np.testing.assert_array_equal(truth[-1], robot.true_world_from_base)
+    assert len(truth) == len(leg.times)
+    assert leg.times[-1] == leg.laser_scans[-1].time == round(robot.time * 1e9)
+    np.testing.assert_array_equal(leg.world_from_base_at_laser[-1], leg.world_from_base[-1])
+
+
+def test_a_blocked_leg_ends_standing_short_of_the_wall(tmp_path: Path) -> None:
+    scene, robot = hall(tmp_path, '<geom name="box" type="box" pos="2 0 0.5" size="0.1 1 0.5"/>')
+    leg = drive(robot, way(robot, 3.0), hokuyos(scene, robot), footprint=Footprint(*robot.footprint))
+    assert leg.outcome == "blocked"
+    assert abs(scene.data.qvel).max() < 1e-3
+    assert robot.contacts() == ()
+
+
+def test_a_wheel_that_never_stands_is_waited_for_three_seconds_only() -> None:
+    robot = Unicycle(pose(0, 0))
+    robot.step = lambda v, w, duration: Unicycle.step(robot, 0.1, w, duration)  # type: ignore[method-assign]
+    leg = drive(robot, np.array([[0.0, 0.0], [0.01, 0.0]]), lambda: [], footprint=FOOTPRINT)
+    assert leg.outcome == "arrived"  # at once
+    assert robot.time == pytest.approx(3.0, abs=0.05)
