@@ -17,7 +17,7 @@ from detector.result import Image, Mask, Orthoimage
 FOOT = 0.3
 """The sides of a door reach the floor; those of a panel in it do not: tested over this height [m]."""
 FOOT_SUPPORT = 0.4
-STRIP = (0.01, 0.06)
+STRIP = (0.01, 0.1)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
 FAINT_COLOUR = 0.008
 """Least difference of colour on all sides that sets a surface apart, of 1: two grey values."""
@@ -244,9 +244,9 @@ class Dominance:
     """Condition 1 on one rectangle."""
 
     colour_share: float
-    """Visible share that has the dominant colour, or is looked through if that is more."""
+    """Visible share that has the dominant colour or is looked through: a semi-open door is a leaf and an opening."""
     depth_share: float
-    """Visible share that lies on the dominant plane, or is looked through if that is more."""
+    """Visible share that lies on the dominant plane or is looked through."""
     depth: float
     """Depth of the dominant plane at that side of the rectangle where it is less [m]; NaN without data."""
 
@@ -269,8 +269,8 @@ def dominance(box: Boxes, scene: Scene) -> Dominance:
     colour_share = float(data.sum())
     if coloured.any():
         colour_share *= _dominant_colour(scene.merged.colour[cut][coloured])
-    depth_share = max(through, float(on_plane.sum())) / total
-    return Dominance(max(through, colour_share) / total, depth_share, float(min(plane[0], plane[-1])))
+    depth_share = (through + float(on_plane.sum())) / total
+    return Dominance((through + colour_share) / total, depth_share, float(min(plane[0], plane[-1])))
 
 
 def _plane(depth: NDArray, data: Mask) -> NDArray[np.float64]:
