@@ -23,6 +23,8 @@ _NEAR = 0.02
 """A wall that ends this near to a corner ends there [m]."""
 
 
+_PROUD = (0.04, 0.2)
+"""What stands out from a wall by this much may be a part of it or stand before it [m]."""
 _BEFORE = 0.3
 """Overhead is looked this far before a wall: clear of the lintels in it [m]."""
 
@@ -36,6 +38,7 @@ class WallParameters(BaseModel):
     doorway: float = Field(default=1.5, ge=0, description="a gap in a wall up to this wide is bridged [m]")
     hidden_gap: float = Field(default=4.0, ge=0, description="bridged up to this if nobody looked through it [m]")
     least_lintel: float = Field(default=1.8, gt=0, description="above the floor: lower it hangs on a wall [m]")
+    least_own_top: float = Field(default=2.0, gt=0, description="length of a low wall under the sky, no leaf's [m]")
     least_roof: float = Field(default=1.0, gt=0, description="area of what a wall may end under, if lower [m2]")
     widest_lintel: float = Field(default=2.5, gt=0, description="over a doorway: wider it is a beam [m]")
     lines: LineParameters = Field(default_factory=LineParameters)
@@ -101,7 +104,9 @@ class WallFinder:
         heights = (self.floor + 0.03, np.inf if ceiling is None else ceiling - 0.03)
         surfaces = [columns_of(line, self.points, self.normals, heights, self.parameters.lines) for line in self.lines]
         top = ceiling if ceiling is not None else _common_top(surfaces, self.floor + self.parameters.least_top)
-        reaching = [self._reaching(line, s, top) for line, s in zip(self.lines, surfaces, strict=True)]
+        ends = [top if ceiling is not None else self._own_top(columns, top) for columns in surfaces]
+        reaching = [self._reaching(line, s, t) for line, s, t in zip(self.lines, surfaces, ends, strict=True)]
+        reaching = self._set_back(reaching)
         seen = self._seen_first(reaching, self._segments(reaching, top))
         segments = self._segments(seen, top)
         if not segments:
@@ -121,6 +126,13 @@ class WallFinder:
             raise MissionError("no wall found round the scanner")
         return Outline(tuple(walls), tuple(loops))
 
+    def _own_top(self, columns: Columns, usual: float) -> float:
+        """Where the walls on a line end that no ceiling ends, if enough of them end there, and lower than usual [m]."""
+        least = self.parameters.least_own_top / self.parameters.lines.column
+        tops = columns.tops[(columns.tops > self.floor + self.parameters.least_top) & ~columns.recessed]
+        common = [top for top in tops if np.count_nonzero(np.abs(tops - top) < 0.05) > least]
+        return float(min(max(common, default=usual), usual))
+
     def _reaching(self, line: PlanLine, columns: Columns, top: float) -> Columns:
         """Columns that may be wall: up to the top or the roof over them, with nothing like them close behind, and
         nothing free under them but what may be a doorway; so a beam or a hanging cupboard is none."""
@@ -131,9 +143,23 @@ class WallFinder:
         hanging = self._free_below(line, columns)
         lintel = hanging & (columns.bottoms > self.floor + self.parameters.least_lintel)
         widest = self.parameters.widest_lintel / self.parameters.lines.column
-        for run in np.split(np.flatnonzero(lintel), np.flatnonzero(np.diff(columns.numbers[lintel]) > 1) + 1):
-            lintel[run] = len(run) <= widest
+        between_walls = np.cumsum(~lintel)[lintel]  # a column that is missing does not hold a lintel
+        for run in np.split(np.flatnonzero(lintel), np.flatnonzero(np.diff(between_walls)) + 1):
+            lintel[run] = len(run) == 0 or np.ptp(columns.numbers[run]) < widest
         return columns.chosen(~hanging | lintel)
+
+    def _set_back(self, surfaces: Sequence[Columns]) -> list[Columns]:
+        """Without what stands little before a wall of which more is seen: pilasters, curtains, pipes."""
+        kept = []
+        for line, columns in zip(self.lines, surfaces, strict=True):
+            spots = line.at((columns.numbers + 0.5) * self.parameters.lines.column)
+            for other, behind in zip(self.lines, surfaces, strict=True):
+                depth = other.depth(spots)
+                before = (depth > _PROUD[0]) & (depth < _PROUD[1]) & (line.normal @ other.normal > 0.99)
+                if before.any() and _is_part_of(columns.chosen(before), other.along(spots[before]), behind):
+                    columns, spots = columns.chosen(~before), spots[~before]
+            kept.append(columns)
+        return kept
 
     def _free_below(self, line: PlanLine, columns: Columns) -> NDArray[np.bool_]:
         """Columns (K,) that end well above the floor, and some scan looked through under them."""
@@ -224,6 +250,15 @@ class WallFinder:
             width=float(np.hypot(*(b - a))),
             height=float(top - self.floor),
         )
+
+
+def _is_part_of(columns: Columns, along: NDArray[np.floating], wall: Columns) -> bool:
+    """Whether columns, at coordinates (K,) along a wall little behind them, stand before it: more of the wall shows
+    between them, or it goes on beyond both ends. A wall that only begins where they end is a step in the plan."""
+    between = np.count_nonzero((wall.lows > along.min()) & (wall.highs < along.max()))
+    beyond = np.count_nonzero(wall.highs < along.min()), np.count_nonzero(wall.lows > along.max())
+    own = len(columns.numbers)
+    return bool(between > own or (min(beyond) >= 3 and sum(beyond) > own))
 
 
 def _upright(line: PlanLine, places: Floats) -> Floats:

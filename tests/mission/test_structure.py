@@ -52,6 +52,32 @@ def level(structure: Structure) -> list[tuple[tuple[float, ...], float]]:
 RECTANGLE = [(0.0, 0.0), (0.0, 4.0), (6.0, 0.0), (6.0, 4.0)]
 
 
+def test_pilasters_and_a_curtain_stand_before_the_wall_that_shows_beside_them() -> None:
+    pilasters = [box((x, x + 0.3), (0, 0.12), (0, 2.6)) for x in (0.5, 1.8, 3.5, 5.1)]
+    curtain = [box((1.9, 4.1), (3.88, 3.9), (0.02, 2.6))]  # 10 cm before the wall y = 4, which goes on at both ends
+    structure = find_structure(scanned([*plain_room(), *pilasters, *curtain], (2, 1.7), (4, 2.4)))
+
+    assert corners(structure) == RECTANGLE
+
+
+def test_beams_across_the_room_are_no_walls_though_something_hides_pieces_of_them() -> None:
+    beams = [box((x, x + 0.2), (0, 4), (2.4, 2.6)) for x in (0.9, 2.2, 3.5, 4.8)]
+    lamp = box((1.1, 1.2), (1.9, 2.2), (2.3, 2.6))  # on the face of the first beam, whose halves are no lintels either
+    structure = find_structure(scanned([*plain_room(), *beams, lamp], (2, 1.7), (4, 2.4)))
+
+    assert corners(structure) == RECTANGLE
+
+
+def test_walls_under_the_open_sky_may_end_at_different_heights() -> None:
+    floor, south, east, north, west = plain_room(ceiling=False)
+    low = [Box((*b.centre[:2], z / 2), (*b.size[:2], z), b.yaw) for b, z in ((south, 2.0), (north, 3.2))]
+    cabinet = box((2, 3), (3.4, 4), (0, 1.9))
+    structure = find_structure(scanned([floor, low[0], east, low[1], west, cabinet], (2, 1.7), (4, 2.4)))
+
+    assert corners(structure) == RECTANGLE
+    assert sorted(round(wall.height, 1) for wall in structure.walls) == [2.0, 2.6, 2.6, 3.2]
+
+
 def test_a_wall_under_a_lowered_ceiling_is_a_wall_and_the_step_overhead_is_none() -> None:
     # Along y = 4 the ceiling is 40 cm lower, 1 m wide: that wall ends at 2.2 m, the others at 2.6 m.
     structure = find_structure(scanned([*plain_room(), box((0, 6), (3, 4), (2.2, 2.6))], (2, 1.5), (4, 2)))
