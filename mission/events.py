@@ -145,13 +145,18 @@ class Drove(Event):
     """(T, 4, 4) poses as odometry has them."""
     laser_scans: tuple[LaserScan, ...]
     """Some of the Hokuyo scans of the leg."""
-    arrived: bool
+    outcome: Literal["arrived", "blocked", "stuck", "contact"]
     reason: str
-    """Why the leg ended."""
+    """The outcome in words."""
     true_world_from_base: NDArray[np.float64]
     """(T, 4, 4)."""
     true_door_angles: NDArray[np.float64]
     """(T, D) joint state of each door of `MissionStarted.true_doors` against closed [rad or m]."""
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the robot stands at the end of its path."""
+        return self.outcome == "arrived"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

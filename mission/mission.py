@@ -224,7 +224,7 @@ class Mission:
             times=leg.times,
             world_from_base=leg.world_from_base,
             laser_scans=leg.laser_scans,
-            arrived=leg.arrived,
+            outcome=leg.outcome,
             reason=leg.reason,
             true_world_from_base=np.array(truth),
             true_door_angles=np.array(angles),
@@ -248,7 +248,7 @@ class Mission:
             ceiling_height=structure.ceiling_height,
         )
         with self._stopwatch("evaluate"):
-            doors, missed = evaluate(results, self._scene.true_doors(), room=room.number)
+            doors, missed = evaluate(results, self._scene.true_doors(), room=room.number, outline=structure.polygon)
         yield self._event(DoorsEvaluated, doors=doors, missed=missed)
 
     def _event(self, kind: type[Any], **content: Any) -> Any:

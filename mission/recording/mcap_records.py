@@ -82,7 +82,7 @@ def drive(event: Drove) -> dict[str, Any]:
     """mission.Drive."""
     return {
         "planned_path": _flat(event.planned_path),
-        "arrived": event.arrived,
+        "outcome": event.outcome,
         "reason": event.reason,
         "poses": len(event.times),
     }

@@ -76,8 +76,8 @@ message Plan                              # next best scan
 
 message Drive                             # a leg of the way
   repeated double planned_path            # x, y of each way point [m]
-  bool arrived
-  string reason                           # why the leg ended
+  string outcome                          # arrived, blocked, stuck or contact
+  string reason                           # the outcome in words
   uint32 poses                            # recorded poses, in /tf
 
 message DoorEstimate                      # a door as the detector has it, beside the truth

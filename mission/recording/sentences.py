@@ -49,7 +49,7 @@ def sentence(event: Event) -> str:
         case Drove():
             steps = np.diff(event.world_from_base[:, :2, 3], axis=0)
             metres = np.linalg.norm(steps, axis=1).sum()
-            return f"drove {metres:.2f} m" + ("" if event.arrived else f", stopped: {event.reason}")
+            return f"drove {metres:.2f} m" + ("" if event.arrived else f", {event.outcome}: {event.reason}")
         case DoorsDetected():
             return f"{sum(len(result.doors) for result in event.results)} doors in {len(event.results)} walls"
         case DoorsEvaluated():

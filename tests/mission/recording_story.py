@@ -116,8 +116,8 @@ def tell_drive(told: Story) -> None:
         times=(seconds * SECOND).astype(np.int64),
         world_from_base=true + made.pose(0.01, 0) - np.eye(4),
         laser_scans=(laser,),
-        arrived=True,
-        reason="arrived",
+        outcome="arrived",
+        reason="reached the end of the path",
         true_world_from_base=true,
         true_door_angles=np.tile([made.JOINT, 0.0, 0.5], (26, 1)),
     )

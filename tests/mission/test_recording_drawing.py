@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 
+from mission.events import Drove
 from mission.recording.drawing import (
     angle_label,
     degrees,
@@ -109,3 +112,11 @@ def test_schema_text_becomes_numbered_fields() -> None:
     many, name = file.message_type[1].field
     assert (many.number, many.type_name, many.label) == (1, ".mission.A", many.LABEL_REPEATED)
     assert (name.number, name.type) == (2, name.TYPE_STRING)
+
+
+def test_a_leg_that_ends_early_is_a_warning_that_says_how_it_ended() -> None:
+    (leg,) = [event for event in story() if isinstance(event, Drove)]
+    assert level(leg) == "INFO"
+    bumped = replace(leg, outcome="contact", reason="touched kerb")
+    assert level(bumped) == "WARN"
+    assert sentence(bumped).endswith("contact: touched kerb")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -141,6 +142,14 @@ def test_the_joints_are_recorded_all_along_the_way(recording: Path) -> None:
     assert len(states) == 1 + len(event_of(Drove).times)  # the start, then each pose
     assert [(j.name, j.position) for j in states[0].joints] == [("hall/door 1", JOINT), ("store", 0.0), ("lift", 0.5)]
     assert states[-1].timestamp.seconds == EPOCH // SECOND + 100  # the drive ends after 100 s
+
+
+@pytest.mark.parametrize("outcome", ["arrived", "blocked", "stuck", "contact"])
+def test_how_a_leg_ended_is_recorded(tmp_path: Path, outcome: Any) -> None:
+    leg = replace(event_of(Drove), outcome=outcome)
+    assert leg.arrived == (outcome == "arrived")
+    path = record(tmp_path / "leg.mcap", [event_of(MissionStarted), leg])
+    assert [message.outcome for message in on_topic(path, "/drive/leg")] == [outcome]
 
 
 def test_frames_lead_from_the_map_to_each_photograph(recording: Path) -> None:
