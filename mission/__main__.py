@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 EXAMPLES = """\
 examples:
   python -m mission run room.xml
-  python -m mission run room.xml --door entrance=40 --seed 3 --out runs/try
+  python -m mission run room.xml --door study_door=40 --seed 3 --out runs/try
   python -m mission run my_flat.xml --set scanner.pattern=draft --max-scans 2
   python -m mission run room.xml --fail-under recall=0.97 --json > result.json
 then:
@@ -28,9 +29,17 @@ def main(arguments: list[str] | None = None) -> int:
         return 130
 
 
+class OneLineParser(argparse.ArgumentParser):
+    """A parser that says what is wrong in one line, like every other error."""
+
+    def error(self, message: str) -> NoReturn:
+        """Exit with status 2."""
+        self.exit(2, f"error: {message} (see {self.prog} --help)\n")
+
+
 def parser() -> argparse.ArgumentParser:
     """The commands and their options."""
-    commands = argparse.ArgumentParser(
+    commands = OneLineParser(
         prog="python -m mission",
         description="Robot scanning missions in simulation that find doors, and prove what they found.",
         epilog=EXAMPLES,
@@ -82,17 +91,17 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _seed(text: str) -> int:
-    value = int(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"must be 0 or more: {text}")
-    return value
+    return _whole(text, least=0)
 
 
 def _positive(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"must be 1 or more: {text}")
-    return value
+    return _whole(text, least=1)
+
+
+def _whole(text: str, *, least: int) -> int:
+    if not text.lstrip("+").isdecimal() or int(text) < least:
+        raise argparse.ArgumentTypeError(f"expected a whole number from {least}, got {text!r}")
+    return int(text)
 
 
 if __name__ == "__main__":

@@ -61,8 +61,8 @@ class DoorEvaluation:
     @property
     def hinge(self) -> Literal["left", "right", "both", "none"]:
         """Side of the hinge seen from inside the room."""
-        sides = {leaf.hinge for leaf in self.door.leaves}
-        return "both" if {"left", "right"} <= sides else next(iter(sides), "none")
+        sides = [leaf.hinge for leaf in self.door.leaves if leaf.hinge != "none"]
+        return "both" if {"left", "right"} <= set(sides) else sides[0] if sides else "none"
 
     @property
     def opens(self) -> Literal["inward", "outward"] | None:
@@ -71,11 +71,22 @@ class DoorEvaluation:
 
 
 def evaluate(
-    results: Sequence[WallResult], true_doors: Sequence[DoorTruth], *, room: int
+    results: Sequence[WallResult],
+    true_doors: Sequence[DoorTruth],
+    *,
+    room: int,
+    outline: NDArray[np.float64],
 ) -> tuple[tuple[DoorEvaluation, ...], tuple[str, ...]]:
     """Compare the doors of a room with the true ones.
 
-    Each true door is given to the detection that overlaps it most, each detection gets one at most.
+    Each true door is given to the detection that overlaps it most, each detection gets one at most. A true door is
+    this room's if it lies along the room's outline, whether or not a wall was found there.
+
+    Args:
+        results: What the detector found, wall by wall.
+        true_doors: All doors of the scene.
+        room: Number of the room.
+        outline: (P, 2) of the room's floor, closed where walls are missing [m].
 
     Returns:
         One evaluation a detected door, wall by wall, and the names of this room's true doors that were not found.
@@ -93,14 +104,33 @@ def evaluate(
     for _, f, t in pairs:
         if f not in truth_of and t not in truth_of.values():
             truth_of[f] = t
-    evaluations, letters = [], {wall: iter("abcdefghijklmnopqrstuvwxyz") for wall in range(len(results))}
+    evaluations = []
     for f, (wall, door) in enumerate(found):
         matched = true_doors[truth_of[f]] if f in truth_of else None
-        door_id = f"{room}.{wall + 1}-{next(letters[wall])}"
+        door_id = f"{room}.{wall + 1}-{_letters(sum(w == wall for w, _ in found[:f]))}"
         evaluations.append(_evaluation(door_id, wall + 1, results[wall].wall, door=door, truth=matched))
-    here = {t for t, truth in enumerate(true_doors) if any(_rectangle_on(r.wall, truth) for r in results)}
+    here = {t for t, truth in enumerate(true_doors) if _is_of_room(truth, outline)}
     missed = tuple(true_doors[t].name for t in sorted(here - set(truth_of.values())))
     return tuple(evaluations), missed
+
+
+def _letters(number: int) -> str:
+    """ "a", "b", ... "z", "aa", "ab", ... of 0, 1, ..."""
+    return (_letters(number // 26 - 1) if number >= 26 else "") + "abcdefghijklmnopqrstuvwxyz"[number % 26]
+
+
+def _is_of_room(truth: DoorTruth, outline: NDArray[np.float64]) -> bool:
+    """Whether a true doorway lies along an edge of the room, be it a wall that was found or a gap."""
+    middle = truth.corners_in_world[:, :2].mean(axis=0)
+    for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        length = float(np.hypot(*(end - start)))
+        along = (end - start) / max(length, 1e-9)
+        x, y = middle - start
+        place, away = x * along[0] + y * along[1], abs(y * along[0] - x * along[1])
+        across = abs(float(truth.normal[:2] @ along)) < np.sqrt(1 - SAME_DIRECTION**2)
+        if across and away < SAME_PLANE and 0 < place < length:
+            return True
+    return False
 
 
 def _evaluation(door_id: str, number: int, wall: Wall, *, door: Door, truth: DoorTruth | None) -> DoorEvaluation:

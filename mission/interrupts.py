@@ -32,13 +32,14 @@ class Interrupts:
     def _take(self, number: int, frame: FrameType | None) -> None:
         self._pending = True
         if self._open:
+            self._open = False  # a second one must not break into what follows
             raise KeyboardInterrupt
 
     @contextmanager
     def raised(self) -> Iterator[None]:
         """Let interrupts through inside the `with`; one that came before is raised at once."""
-        self._open = True
         try:
+            self._open = True
             if self._pending:
                 raise KeyboardInterrupt
             yield

@@ -25,6 +25,7 @@ from mission.events import (
     Registered,
     Structured,
 )
+from mission.rigid import angle_between
 
 SCHEMA = 1
 """Version of the layout of doors.json."""
@@ -45,7 +46,7 @@ class RoomReport:
 
 @dataclass
 class Report:
-    """A sink that gathers the results of a mission; `write` puts them on disk at any time."""
+    """A sink that gathers the results of a mission."""
 
     started: MissionStarted | None = None
     finished: MissionFinished | None = None
@@ -96,7 +97,7 @@ class Report:
         }
 
     def metrics(self) -> dict[str, float | int | None]:
-        """Counts and means over the doors of all rooms; None where there is nothing to average."""
+        """Counts, and means and maxima over the found doors; None where there is nothing to average."""
         doors = [door for room in self.rooms.values() for door in room.doors]
         found = [door.overlap for door in doors if door.overlap is not None]
         missed = sum(len(room.missed) for room in self.rooms.values())
@@ -195,14 +196,14 @@ def _truth(evaluation: DoorEvaluation) -> dict[str, Any] | None:
 
 
 def _registration(event: Registered) -> dict[str, Any]:
-    error = np.linalg.inv(event.true_world_from_scanner) @ event.world_from_scanner
-    angle = np.arccos(np.clip((np.trace(error[:3, :3]) - 1) / 2, -1, 1))
+    offset = event.world_from_scanner[:3, 3] - event.true_world_from_scanner[:3, 3]
+    angle = angle_between(event.true_world_from_scanner, event.world_from_scanner)
     return {
         "scan": event.scan_number,
         "accepted": event.accepted,
         "reason": event.reason,
         "fitness": _rounded(event.fitness),
-        "translation_error_m": round(float(np.linalg.norm(error[:3, 3])), 5),
+        "translation_error_m": round(float(np.linalg.norm(offset)), 5),
         "rotation_error_deg": round(float(np.degrees(angle)), 4),
     }
 

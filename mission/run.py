@@ -9,13 +9,15 @@ import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
+from itertools import count
 from pathlib import Path
 from time import perf_counter
 
 from rich.console import Console
 
 import assets
-from mission.config import MissionConfig, read_config
+from detector.room import DetectorError
+from mission.config import read_config
 from mission.errors import MissionError, UsageError
 from mission.events import Event
 from mission.interrupts import Interrupts
@@ -25,7 +27,7 @@ from mission.report import Report, write_json
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
 from sim.errors import SimError
-from sim.scene import Scene, load_scene
+from sim.scene import load_scene
 
 logger = logging.getLogger(__name__)
 
@@ -42,9 +44,10 @@ METRICS = ("recall", "precision", "found", "coverage")
 def run(options: argparse.Namespace) -> int:
     """Run a mission as the command line says and return the exit status."""
     start = perf_counter()
-    logging.basicConfig(level=logging.ERROR, format="%(levelname)s %(name)s: %(message)s")
+    silent = options.quiet or options.json
+    logging.basicConfig(level=logging.ERROR if silent else logging.WARNING, format="%(levelname)s: %(message)s")
     wide = None if sys.stderr.isatty() else LOG_WIDTH
-    console = Console(stderr=True, quiet=options.quiet or options.json, width=wide)
+    console = Console(stderr=True, quiet=silent, width=wide)
     try:
         bars = dict(_setting("--fail-under", text) for text in options.fail_under)
         _check_metrics(bars)
@@ -52,8 +55,11 @@ def run(options: argparse.Namespace) -> int:
         config = read_config(options.config, settings)
         angles = {name: math.radians(angle) for name, angle in (_setting("--door", text) for text in options.door)}
         scene = load_scene(find_scene(options.scene), door_angles=angles, keyframe=options.keyframe)
-        folder = make_folder(options.out, scene_name=options.scene)
-        report, status = carry_out(scene, config, seed=options.seed, folder=folder, console=console, start=start)
+        progress = TerminalProgress(console)
+        stopwatch = Stopwatch(progress.stage)
+        with Mission(scene, config, seed=options.seed, stopwatch=stopwatch) as mission:
+            folder = make_folder(options.out, scene_name=options.scene)
+            report, status = carry_out(mission, folder, progress=progress, stopwatch=stopwatch, start=start)
     except (SimError, MissionError) as error:
         print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
         return BAD_INPUT
@@ -65,9 +71,16 @@ def run(options: argparse.Namespace) -> int:
 
 
 def carry_out(
-    scene: Scene, config: MissionConfig, *, seed: int, folder: Path, console: Console, start: float
+    mission: Mission, folder: Path, *, progress: TerminalProgress, stopwatch: Stopwatch, start: float
 ) -> tuple[Report, int]:
     """Run the mission into all sinks; whatever happens, the files are complete at the end.
+
+    Args:
+        mission: At its start.
+        folder: Where the files go.
+        progress: Tells a person.
+        stopwatch: That the mission counts its stages with.
+        start: Of the program, by `perf_counter` [s].
 
     Returns:
         What was found, and the exit status.
@@ -76,43 +89,42 @@ def carry_out(
     from mission.recording.rerun_sink import RerunSink
 
     report = Report()
-    progress = TerminalProgress(console)
-    stopwatch = Stopwatch(progress.stage)
-    with Interrupts() as interrupts:
-        with ExitStack() as stack:
-            mission = stack.enter_context(Mission(scene, config, seed=seed, stopwatch=stopwatch))
-            sinks: list[Sink] = [
-                stack.enter_context(progress),
-                report,
-                stack.enter_context(RerunSink(folder / "mission.rrd")),
-                stack.enter_context(McapSink(folder / "mission.mcap")),
-            ]
-            status = _pump(mission, sinks, interrupts, stopwatch)
-            with stopwatch("recording"):
-                stack.close()
-        write_json(folder / "doors.json", report.doors())
-        write_json(folder / "summary.json", report.summary(stopwatch.seconds, perf_counter() - start))
+    with Interrupts() as interrupts, ExitStack() as files:
+        files.callback(_write_reports, folder, report, stopwatch, start)  # last of all, whatever happens
+        sinks: list[Sink] = [
+            report,
+            files.enter_context(progress),
+            files.enter_context(RerunSink(folder / "mission.rrd")),
+            files.enter_context(McapSink(folder / "mission.mcap")),
+        ]
+        status = _pump(mission, sinks, interrupts, stopwatch)
     return report, status
 
 
-def _pump(mission: Mission, sinks: Iterable[Sink], interrupts: Interrupts, stopwatch: Stopwatch) -> int:
-    """Hand every event to every sink; end the stream properly if the mission is stopped or breaks."""
-    status = DONE
-    events = _events(mission, interrupts)
+def _write_reports(folder: Path, report: Report, stopwatch: Stopwatch, start: float) -> None:
+    write_json(folder / "doors.json", report.doors())
+    write_json(folder / "summary.json", report.summary(stopwatch.seconds, perf_counter() - start))
+
+
+def _pump(mission: Mission, sinks: list[Sink], interrupts: Interrupts, stopwatch: Stopwatch) -> int:
+    """Hand every event to every sink; end the stream properly if the mission is stopped or something breaks."""
     try:
-        for event in events:
+        for event in _events(mission, interrupts):
             _hand_out(event, sinks, stopwatch)
+        return DONE
     except KeyboardInterrupt:
-        status = INTERRUPTED
-        _hand_out(mission.finished("interrupted", "stopped by the user"), sinks, stopwatch)
-    except MissionError as error:
-        status = FAILED
+        last, status = mission.finished("interrupted", "stopped by the user"), INTERRUPTED
+    except (MissionError, DetectorError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
-        _hand_out(mission.finished("failed", str(error)), sinks, stopwatch)
-    except Exception as error:  # a defect of ours: say so in full, after the recordings are safe
-        status = FAILED
+        last, status = mission.finished("failed", str(error)), FAILED
+    except Exception as error:  # a defect of ours: say so in full, after which the recordings are closed
         logger.exception("the mission broke")
-        _hand_out(mission.finished("failed", f"{type(error).__name__}: {error}"), sinks, stopwatch)
+        last, status = mission.finished("failed", f"{type(error).__name__}: {error}"), FAILED
+    for sink in sinks:
+        try:
+            _hand_out(last, [sink], stopwatch)
+        except Exception as error:  # the sink that broke the mission may break again; the others must end well
+            print(f"error: {type(sink).__name__} cannot record the end: {error}", file=sys.stderr)
     return status
 
 
@@ -155,16 +167,25 @@ def make_folder(out: Path | None, *, scene_name: str) -> Path:
     """
     try:
         if out is None:
-            runs, stem = Path("runs"), Path(scene_name).stem
-            number = next(n for n in range(1, sys.maxsize) if not (runs / f"{stem}-{n}").exists())
-            out = runs / f"{stem}-{number}"
+            return _numbered(Path("runs"), Path(scene_name).stem)
         out.mkdir(parents=True, exist_ok=True)
-        for name in ("mission.rrd", "mission.mcap", "doors.json", "summary.json"):
-            (out / name).unlink(missing_ok=True)
-        (out / "mission.rrd").touch()
+        (out / "mission.rrd").open("ab").close()  # can it be written?
     except OSError as error:
         raise UsageError(f"cannot write the results: {error.strerror}: {error.filename}") from error
     return out
+
+
+def _numbered(runs: Path, stem: str) -> Path:
+    """A new folder of the next free number, which nobody else has taken meanwhile."""
+    runs.mkdir(exist_ok=True)
+    for number in count(1):
+        folder = runs / f"{stem}-{number}"
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            continue
+        return folder
+    raise AssertionError("unreachable")
 
 
 def _setting(option: str, text: str) -> tuple[str, float]:
@@ -185,16 +206,24 @@ def _check_metrics(bars: Mapping[str, float]) -> None:
 
 
 def _judge(report: Report, bars: Mapping[str, float]) -> int:
-    """Compare the metrics with the bars; a metric that has no value, such as precision without doors, passes."""
+    """Compare with the bars; a missed door counts as recall 0, a false positive as precision 0, no door as nothing."""
     metrics = report.metrics()
-    if metrics["doors"]:
-        metrics["found"] = (metrics["found"] or 0) / metrics["doors"]
-    else:
-        metrics["found"] = None
+    found, false_positives = metrics["found"] or 0, metrics["false_positives"] or 0
+    values = {
+        "recall": _over(metrics["recall"], found, metrics["doors"]),
+        "precision": _over(metrics["precision"], found, found + false_positives),
+        "found": _over(1.0, found, metrics["doors"]),
+        "coverage": metrics["coverage"],
+    }
     status = DONE
     for name, bar in bars.items():
-        value = metrics[name]
+        value = values[name]
         if value is not None and value < bar:
             print(f"below --fail-under: {name} is {value:.4f}, asked for {bar:g}", file=sys.stderr)
             status = BELOW
     return status
+
+
+def _over(mean: float | None, found: float, count: float | None) -> float | None:
+    """A mean over the found doors as one over all; None if there are none."""
+    return (mean or 0.0) * found / count if count else None

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from mission.__main__ import main
+from mission.__main__ import EXAMPLES, main, parser
+from mission.run import find_scene
+from sim.scene import load_scene
 
 ROOM = """
 <mujoco>
@@ -115,11 +117,25 @@ def test_an_output_folder_that_cannot_be_made_is_named(tmp_path: Path, capsys: p
     assert "cannot write the results" in capsys.readouterr().err
 
 
-def test_an_unknown_option_exits_with_2(capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("wrong", [("--speed", "3"), ("--seed", "abc"), ("--seed", "-1"), ("--max-scans", "0")])
+def test_a_wrong_option_is_said_in_one_line(wrong: tuple[str, str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as caught:
-        main(["run", "room.xml", "--speed", "3"])
+        main(["run", "room.xml", *wrong])
     assert caught.value.code == 2
-    assert "--speed" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert said.startswith("error: ")
+    assert said.count("\n") == 1
+    assert wrong[0] in said
+
+
+def test_every_example_of_the_help_parses_and_names_doors_that_exist() -> None:
+    examples = [line.split(" > ")[0].split() for line in EXAMPLES.splitlines() if "-m mission" in line]
+    assert len(examples) >= 4
+    for words in examples:
+        options = parser().parse_args(words[words.index("mission") + 1 :])
+        if options.scene == "room.xml":
+            angles = dict.fromkeys((door.split("=")[0] for door in options.door), 0.5)
+            load_scene(find_scene(options.scene), door_angles=angles)
 
 
 def test_help_shows_real_command_lines_and_imports_nothing_heavy() -> None:

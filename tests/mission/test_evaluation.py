@@ -13,6 +13,8 @@ from detector.room import Wall
 from mission.evaluation import evaluate
 
 EMPTY = np.zeros((0, 2), np.float32)
+OUTLINE = np.array([[14.0, -7.0], [10.0, -7.0], [10.0, -11.0], [14.0, -11.0]])
+"""A room of 4 x 4 m whose first edge is the wall at yaw 0."""
 
 
 def wall(yaw: float = 0.0) -> Wall:
@@ -47,7 +49,9 @@ def result(where: Wall, *doors: Door) -> Any:
 def test_a_door_off_by_a_tenth_of_its_width_has_precision_and_recall_of_nine_tenths(yaw: float) -> None:
     # Q = 1.1..2.1, G = 1.0..2.0, both 2 m high: t_p = 0.9 x 2, f_p = f_n = 0.1 x 2.
     where = wall(yaw)
-    (found,), missed = evaluate([result(where, door(1.1, 2.1))], [truth("oak", where, 1.0, 2.0)], room=1)
+    (found,), missed = evaluate(
+        [result(where, door(1.1, 2.1))], [truth("oak", where, 1.0, 2.0)], room=1, outline=OUTLINE
+    )
     assert (found.true_name, missed) == ("oak", ())
     assert found.overlap is not None
     assert found.overlap.precision == pytest.approx(0.9)
@@ -57,7 +61,9 @@ def test_a_door_off_by_a_tenth_of_its_width_has_precision_and_recall_of_nine_ten
 
 def test_a_detection_where_no_door_is_has_no_truth() -> None:
     where = wall()
-    (found,), missed = evaluate([result(where, door(0.0, 0.9))], [truth("oak", where, 2.0, 3.0)], room=1)
+    (found,), missed = evaluate(
+        [result(where, door(0.0, 0.9))], [truth("oak", where, 2.0, 3.0)], room=1, outline=OUTLINE
+    )
     assert found.true_name is None
     assert found.angle_error is None
     assert missed == ("oak",)
@@ -65,7 +71,9 @@ def test_a_detection_where_no_door_is_has_no_truth() -> None:
 
 def test_two_detections_of_one_door_are_one_hit_and_one_false_positive() -> None:
     where = wall()
-    found, _ = evaluate([result(where, door(1.0, 1.6), door(1.0, 1.95))], [truth("oak", where, 1.0, 2.0)], room=1)
+    found, _ = evaluate(
+        [result(where, door(1.0, 1.6), door(1.0, 1.95))], [truth("oak", where, 1.0, 2.0)], room=1, outline=OUTLINE
+    )
     assert [one.true_name for one in found] == [None, "oak"]
 
 
@@ -73,20 +81,36 @@ def test_a_door_in_another_wall_is_not_of_this_room() -> None:
     where = wall()
     behind = truth("far", where, 1.0, 2.0, depth=-3.0)
     across = truth("across", wall(np.pi / 2), 1.0, 2.0)
-    found, missed = evaluate([result(where)], [behind, across], room=1)
+    found, missed = evaluate([result(where)], [behind, across], room=1, outline=OUTLINE)
     assert (found, missed) == ((), ())
+
+
+def test_a_door_in_a_wall_that_the_mission_lost_is_missed() -> None:
+    where = wall()
+    _, missed = evaluate([], [truth("oak", where, 1.0, 2.0)], room=1, outline=OUTLINE)
+    assert missed == ("oak",)
+
+
+def test_a_door_of_the_next_room_close_to_the_common_wall_is_not_missed() -> None:
+    beyond = truth("next", wall(np.pi / 2), 0.2, 1.1)  # its wall begins at our corner and leads away
+    _, missed = evaluate([result(wall())], [beyond], room=1, outline=OUTLINE)
+    assert missed == ()
 
 
 def test_a_recessed_door_is_still_the_walls() -> None:
     where = wall()
-    (found,), _ = evaluate([result(where, door(1.0, 2.0))], [truth("deep", where, 1.0, 2.0, depth=-0.2)], room=1)
+    (found,), _ = evaluate(
+        [result(where, door(1.0, 2.0))], [truth("deep", where, 1.0, 2.0, depth=-0.2)], room=1, outline=OUTLINE
+    )
     assert found.true_name == "deep"
 
 
 def test_the_angle_error_is_estimate_less_joint() -> None:
     where = wall()
     open_door = door(1.0, 2.0, leaf(34.8, opens="inward"))
-    (found,), _ = evaluate([result(where, open_door)], [truth("oak", where, 1.0, 2.0, angle_deg=35.0)], room=1)
+    (found,), _ = evaluate(
+        [result(where, open_door)], [truth("oak", where, 1.0, 2.0, angle_deg=35.0)], room=1, outline=OUTLINE
+    )
     assert found.angle_error is not None
     assert np.degrees(found.angle_error) == pytest.approx(-0.2)
 
@@ -105,7 +129,7 @@ def test_an_open_leaf_is_drawn_on_its_hinge_and_to_its_side(
     hinge: str, opens: str, free_edge: tuple[float, float]
 ) -> None:
     where = wall(0.5)
-    (found,), _ = evaluate([result(where, door(1.0, 2.0, leaf(90.0, hinge, opens)))], [], room=1)
+    (found,), _ = evaluate([result(where, door(1.0, 2.0, leaf(90.0, hinge, opens)))], [], room=1, outline=OUTLINE)
     corners = where.wall_from_world(found.leaf_corners_in_world[0])
     assert corners[0] == pytest.approx([free_edge[0], 0.0, 0.0], abs=1e-9)
     assert corners[1] == pytest.approx([free_edge[0], 0.0, free_edge[1]], abs=1e-9)
@@ -115,15 +139,27 @@ def test_an_open_leaf_is_drawn_on_its_hinge_and_to_its_side(
 def test_the_leaves_of_a_double_door_share_its_width() -> None:
     where = wall()
     double = Door(Rectangle(1.0, 0.0, 3.0, 2.0), "double", "closed", (leaf(hinge="left"), leaf(hinge="right")))
-    (found,), _ = evaluate([result(where, double)], [], room=1)
+    (found,), _ = evaluate([result(where, double)], [], room=1, outline=OUTLINE)
     left, right = (where.wall_from_world(corners)[:2, 0] for corners in found.leaf_corners_in_world)
     assert left == pytest.approx([1.0, 2.0])
     assert right == pytest.approx([3.0, 2.0])
     assert found.hinge == "both"
 
 
+def test_a_double_door_with_one_closed_leaf_is_hinged_where_the_other_is() -> None:
+    double = Door(Rectangle(1.0, 0.0, 3.0, 2.0), "double", "semi-open", (leaf(30.0), leaf(hinge="none")))
+    (found,), _ = evaluate([result(wall(), double)], [], room=1, outline=OUTLINE)
+    assert found.hinge == "left"
+
+
+def test_the_27th_door_of_a_wall_has_two_letters() -> None:
+    many = [door(0.1 * i, 0.1 * i + 0.09) for i in range(28)]
+    found, _ = evaluate([result(wall(), *many)], [], room=1, outline=OUTLINE)
+    assert [one.door_id for one in found[25:]] == ["1.1-z", "1.1-aa", "1.1-ab"]
+
+
 def test_doors_are_named_by_room_wall_and_letter() -> None:
     where = wall()
     results = [result(where), result(where, door(0.0, 0.9), door(2.0, 2.9))]
-    found, _ = evaluate(results, [], room=3)
+    found, _ = evaluate(results, [], room=3, outline=OUTLINE)
     assert [one.door_id for one in found] == ["3.2-a", "3.2-b"]
