@@ -74,8 +74,8 @@ def drive(
     path: NDArray[np.float64],
     measure: Callable[[], Sequence[LaserScan]],
     *,
+    footprint: Footprint,
     world_from_odometry: NDArray[np.float64] | None = None,
-    footprint: Footprint | None = None,
     parameters: DrivingParameters | None = None,
     localise: Localise | None = None,
     watch: Callable[[], None] = lambda: None,
@@ -89,11 +89,12 @@ def drive(
         robot: Is moved.
         path: (P, 2) way points in the world [m], the robot's position first.
         measure: Takes a reading of each Hokuyo now.
+        footprint: Of the robot.
         world_from_odometry: (4, 4) correction that the last registration made to the odometry; none by default.
         localise: Gives the pose (4, 4) that fits readings best, from them and the pose by odometry; asked now and then.
         watch: Called at each recorded pose, so that the caller can note what else it wants beside it.
     """
-    parameters, footprint = parameters or DrivingParameters(), footprint or Footprint()
+    parameters = parameters or DrivingParameters()
     correction = np.eye(4) if world_from_odometry is None else world_from_odometry
     log = _Log(robot, measure, localise, watch, correction=correction, parameters=parameters)
     outcome, reason = _advance(robot, path, log, footprint=footprint, parameters=parameters)

@@ -68,9 +68,9 @@ class GridParameters(BaseModel):
 class Footprint:
     """The rectangle that the robot covers, its centre the origin of the base frame."""
 
-    length: float = 1.0
-    """Along x [m]; Guardian on tracks (vendor's navigation footprint)."""
-    width: float = 0.55
+    length: float
+    """Along x [m]."""
+    width: float
     """Along y [m]."""
 
     @property
@@ -152,9 +152,9 @@ def grid_from_scans(
     scanners_in_world: NDArray[np.floating],
     *,
     floor_height: float,
+    footprint: Footprint,
     lasers: Sequence[tuple[LaserScan, NDArray[np.float64]]] = (),
     robot_poses: Sequence[NDArray[np.float64]] = (),
-    footprint: Footprint | None = None,
     parameters: GridParameters | None = None,
 ) -> OccupancyGrid:
     """Map the floor from all that was measured so far.
@@ -165,9 +165,9 @@ def grid_from_scans(
         points_in_world: (N, 3) points of all scans, thinned to 3 cm or denser [m].
         scanners_in_world: (S, 3) origins of the beams [m], S >= 1.
         floor_height: World z of the floor [m].
+        footprint: What the robot covers where it has stood.
         lasers: Hokuyo scans, each with the (4, 4) world_from_base at which it was taken.
         robot_poses: (4, 4) world_from_base at which the robot has stood.
-        footprint: What the robot covers there.
     """
     parameters = parameters or GridParameters()
     points = _within_reach(np.asarray(points_in_world), scanners_in_world, floor_height, parameters)
@@ -186,7 +186,7 @@ def grid_from_scans(
     for scanner in np.asarray(scanners_in_world, dtype=np.float64):
         cells[_shadowed(grid, floor, scanner, floor_height, parameters) & (cells == Cell.FREE)] = Cell.UNKNOWN
     for world_from_base in robot_poses:
-        cells[_under(grid, footprint or Footprint(), world_from_base)] = Cell.FREE
+        cells[_under(grid, footprint, world_from_base)] = Cell.FREE
     return replace(grid, cells=cells)
 
 

@@ -97,7 +97,7 @@ def road_map(
     grid: OccupancyGrid,
     world_from_base: NDArray[np.float64],
     *,
-    footprint: Footprint | None = None,
+    footprint: Footprint,
     goals: NDArray[np.float64] | None = None,
     within: NDArray[np.float64] | None = None,
     parameters: NavigationParameters | None = None,
@@ -109,11 +109,12 @@ def road_map(
 
     Args:
         world_from_base: (4, 4) pose of the robot.
+        footprint: Of the robot.
         goals: (G, 2) further points wanted on the map, after the robot's own and before the raster; one whose disc is
             not free gets no way.
         within: (P, 2) polygon around the points of the raster [m]; everywhere by default.
     """
-    parameters, footprint = parameters or NavigationParameters(), footprint or Footprint()
+    parameters = parameters or NavigationParameters()
     turning, needed = footprint.half_diagonal + parameters.margin, footprint.width / 2 + parameters.margin
     goals = np.empty((0, 2)) if goals is None else np.asarray(goals, dtype=np.float64).reshape(-1, 2)
     start = np.asarray(world_from_base, dtype=np.float64)[:2, 3]
@@ -150,7 +151,7 @@ def plan_path(
     world_from_base: NDArray[np.float64],
     goal: NDArray[np.float64],
     *,
-    footprint: Footprint | None = None,
+    footprint: Footprint,
     parameters: NavigationParameters | None = None,
 ) -> NDArray[np.float64] | None:
     """(P, 2) way points from the robot's position to a (2,) goal [m]; None if there is no way.

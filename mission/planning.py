@@ -99,9 +99,9 @@ def plan_next_scan(
     base_from_scanner: NDArray[np.float64],
     scanners_in_world: NDArray[np.float64],
     floor_height: float,
+    footprint: Footprint,
     room: NDArray[np.float64] | None = None,
     failed_in_world: NDArray[np.float64] | None = None,
-    footprint: Footprint | None = None,
     navigation: NavigationParameters | None = None,
     parameters: PlanningParameters | None = None,
 ) -> Plan:
@@ -115,10 +115,11 @@ def plan_next_scan(
         base_from_scanner: (4, 4) mount of the scanner.
         scanners_in_world: (S, 3) where was scanned so far [m].
         floor_height: World z of the floor [m].
+        footprint: Of the robot.
         room: (P, 2) polygon that candidates must lie in; anywhere by default.
         failed_in_world: (F, 3) where scans were taken that could not be used [m]: they count, and are not repeated.
     """
-    parameters, footprint = parameters or PlanningParameters(), footprint or Footprint()
+    parameters = parameters or PlanningParameters()
     roads = road_map(grid, world_from_base, footprint=footprint, parameters=navigation, within=room)
     survey = Survey(
         voxels,

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+import sim.scene
 from mission.grid import Cell, Footprint, OccupancyGrid
 
 Rectangle = tuple[float, float, float, float]
 """x from, x to, y from, y to [m]."""
-FOOTPRINT = Footprint(length=1.0, width=0.55)
+FOOTPRINT = Footprint(*sim.scene.FOOTPRINT)
 
 
 def pose(x: float, y: float, yaw: float = 0.0) -> NDArray[np.float64]:

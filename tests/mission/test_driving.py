@@ -122,7 +122,7 @@ def test_a_touch_that_a_leg_starts_with_and_does_not_leave_behind_ends_it() -> N
 
 
 def test_a_robot_turns_on_the_spot_only_if_its_corners_find_room() -> None:
-    # A wall 0.35 m beside the centre: the body has 7 cm, its corners would sweep 0.57 m.
+    # A wall 0.35 m beside the centre: the body has 6.5 cm, its corners would sweep 0.56 m.
     wall = [(-2.0, 2.0, -0.5, -0.35)]
     robot = Unicycle(pose(0, 0))
     driven = drive(robot, np.array([[0.0, 0.0], [0.0, 2.0]]), hokuyos(robot, wall), footprint=FOOTPRINT)

@@ -10,7 +10,6 @@ import pytest
 from numpy.typing import NDArray
 
 from mission.driving import drive
-from mission.grid import Footprint
 from sim.hokuyo import Hokuyo, LaserScan
 from sim.robot import Robot, RobotParameters
 from sim.scene import Scene, load_scene
@@ -57,13 +56,13 @@ def way(robot: Robot, x: float) -> NDArray[np.float64]:
 
 def test_after_a_touch_the_robot_drives_away_from_what_it_touched(tmp_path: Path) -> None:
     scene, robot = hall(tmp_path, KERB)
-    measure, footprint = hokuyos(scene, robot), Footprint(*robot.footprint)
-    bump = drive(robot, way(robot, 2.0), measure, footprint=footprint)
+    measure = hokuyos(scene, robot)
+    bump = drive(robot, way(robot, 2.0), measure, footprint=FOOTPRINT)
     assert bump.outcome == "contact"
     assert bump.reason == "touched kerb"
-    again = drive(robot, way(robot, 1.5), measure, footprint=footprint)
+    again = drive(robot, way(robot, 1.5), measure, footprint=FOOTPRINT)
     assert again.outcome == "contact"  # still ahead
-    back = drive(robot, way(robot, -0.5), measure, footprint=footprint)
+    back = drive(robot, way(robot, -0.5), measure, footprint=FOOTPRINT)
     assert back.outcome == "arrived"
     assert (
         robot.true_world_from_base[0, 3] < -0.4
@@ -77,7 +76,7 @@ def test_at_the_end_of_a_leg_the_robot_stands_where_the_record_ends(tmp_path: Pa
         robot,
         way(robot, 1.0),
         hokuyos(scene, robot),
-        footprint=Footprint(*robot.footprint),
+        footprint=FOOTPRINT,
         watch=lambda: truth.append(robot.true_world_from_base),
     )
     assert leg.outcome == "arrived"
@@ -91,7 +90,7 @@ def test_at_the_end_of_a_leg_the_robot_stands_where_the_record_ends(tmp_path: Pa
 
 def test_a_blocked_leg_ends_standing_short_of_the_wall(tmp_path: Path) -> None:
     scene, robot = hall(tmp_path, '<geom name="box" type="box" pos="2 0 0.5" size="0.1 1 0.5"/>')
-    leg = drive(robot, way(robot, 3.0), hokuyos(scene, robot), footprint=Footprint(*robot.footprint))
+    leg = drive(robot, way(robot, 3.0), hokuyos(scene, robot), footprint=FOOTPRINT)
     assert leg.outcome == "blocked"
     assert abs(scene.data.qvel).max() < 1e-3
     assert robot.contacts() == ()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mission.grid import Cell, OccupancyGrid, grid_from_scans, with_laser
+from mission.grid import Cell, Footprint, OccupancyGrid, grid_from_scans, with_laser
 from tests.mission.driving_world import FOOTPRINT, Rectangle, free_room, laser_scan, pose
 
 SCANNER = np.array([[0.0, 0.0, 1.2]])
@@ -27,7 +27,7 @@ def state(grid: OccupancyGrid, x: float, y: float) -> Cell:
 def test_floor_is_free_what_stands_on_it_occupied_and_the_rest_unknown() -> None:
     floor = sheet((2, 4), (-1, 1), 0.002)
     box = sheet((3, 3.3), (0, 0.3), 0.4)
-    grid = grid_from_scans(np.concatenate([floor, box]), SCANNER, floor_height=0.0)
+    grid = grid_from_scans(np.concatenate([floor, box]), SCANNER, floor_height=0.0, footprint=FOOTPRINT)
     assert state(grid, 2.5, 0.5) == Cell.FREE
     assert state(grid, 3.15, 0.15) == Cell.OCCUPIED
     assert state(grid, 1.0, 0.0) == Cell.UNKNOWN  # within the blind disc
@@ -37,14 +37,14 @@ def test_what_the_robot_passes_under_and_lone_mixed_returns_do_not_block() -> No
     floor = sheet((2, 4), (-1, 1), 0.0)
     lamp = sheet((3, 3.3), (0, 0.3), 1.9)  # over 1.6 m
     ghost = np.array([[2.52, -0.52, 0.8]])
-    grid = grid_from_scans(np.concatenate([floor, lamp, ghost]), SCANNER, floor_height=0.0)
+    grid = grid_from_scans(np.concatenate([floor, lamp, ghost]), SCANNER, floor_height=0.0, footprint=FOOTPRINT)
     assert state(grid, 3.15, 0.15) == Cell.FREE
     assert state(grid, 2.52, -0.52) == Cell.FREE
 
 
 def test_heights_are_measured_from_the_floor_wherever_it_lies() -> None:
     floor, box = sheet((2, 4), (-1, 1), -3.2), sheet((3, 3.3), (0, 0.3), -3.0)
-    grid = grid_from_scans(np.concatenate([floor, box]), SCANNER - [0, 0, 3.2], floor_height=-3.2)
+    grid = grid_from_scans(np.concatenate([floor, box]), SCANNER - [0, 0, 3.2], floor_height=-3.2, footprint=FOOTPRINT)
     assert state(grid, 2.5, 0.5) == Cell.FREE
     assert state(grid, 3.15, 0.15) == Cell.OCCUPIED
 
@@ -64,7 +64,7 @@ def both_lasers(obstacles: list[Rectangle]) -> list[tuple[Any, NDArray[np.float6
 def test_hokuyos_clear_the_scanners_blind_disc_up_to_what_they_hit() -> None:
     lasers = both_lasers([(0.9, 1.1, -0.2, 0.2)])
     grid = grid_from_scans(
-        ring_of_floor(), SCANNER, floor_height=0.0, lasers=lasers, robot_poses=[pose(0, 0)], footprint=FOOTPRINT
+        ring_of_floor(), SCANNER, floor_height=0.0, footprint=FOOTPRINT, lasers=lasers, robot_poses=[pose(0, 0)]
     )
     assert state(grid, -1.0, 0.3) == Cell.FREE
     assert state(grid, 0.7, 0.0) == Cell.FREE
@@ -77,14 +77,17 @@ def test_hokuyos_clear_the_scanners_blind_disc_up_to_what_they_hit() -> None:
 def test_a_missing_floor_betrays_a_table_top_that_scanner_and_hokuyo_both_miss() -> None:
     # A table top 1 m from the scanner gives no return (minimum range) and lies above the Hokuyo's plane.
     shadowed = ring_of_floor(shadow=(-0.4, 0.4))
-    grid = grid_from_scans(shadowed, SCANNER, floor_height=0.0, lasers=both_lasers([]))
+    grid = grid_from_scans(shadowed, SCANNER, floor_height=0.0, footprint=FOOTPRINT, lasers=both_lasers([]))
     assert state(grid, 1.0, 0.0) == Cell.UNKNOWN
     assert state(grid, -1.0, 0.0) == Cell.FREE
 
 
 def test_a_laser_reading_never_clears_what_the_scanner_found_occupied() -> None:
     grid = grid_from_scans(
-        np.concatenate([sheet((-1, 3), (-1, 1), 0.0), sheet((1, 1.4), (0, 0.4), 0.75)]), SCANNER, floor_height=0.0
+        np.concatenate([sheet((-1, 3), (-1, 1), 0.0), sheet((1, 1.4), (0, 0.4), 0.75)]),
+        SCANNER,
+        floor_height=0.0,
+        footprint=FOOTPRINT,
     )
     grid = with_laser(grid, laser_scan(pose(0, 0), []), pose(0, 0))
     assert state(grid, 1.2, 0.2) == Cell.OCCUPIED
@@ -95,3 +98,17 @@ def test_clearance_is_the_distance_to_the_side_of_the_nearest_cell_that_is_not_f
     # From the middle of the room: 1 m to the walls on either side.
     assert grid.clearance_at(np.array([1.5, 1.0])) == pytest.approx(1.0, abs=0.03)
     assert grid.clearance_at(np.array([99.0, 0.0])) == 0.0
+
+
+def test_the_cells_under_the_robot_are_those_of_its_own_outline() -> None:
+    # MoPAD is 0.97 m long and 0.57 m wide; its ends are at 0.485 and 0.285, cells are 5 cm.
+    stands = grid_from_scans(ring_of_floor(), SCANNER, floor_height=0.0, footprint=FOOTPRINT, robot_poses=[pose(0, 0)])
+    c = stands.centres()
+    near = (np.abs(c) < 1.0).all(axis=-1)  # inside the blind disc nothing else speaks
+    covered = (np.abs(c[..., 0]) <= 0.485) & (np.abs(c[..., 1]) <= 0.285)
+    np.testing.assert_array_equal((stands.cells == Cell.FREE)[near], covered[near])
+
+
+def test_nobody_assumes_a_footprint() -> None:
+    with pytest.raises(TypeError):
+        Footprint()  # type: ignore[call-arg]

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mission.grid import Cell, Footprint, OccupancyGrid
+from mission.grid import Cell, OccupancyGrid
 from mission.planning import Plan, PlanningParameters, plan_next_scan, worth
+from tests.mission.driving_world import FOOTPRINT
 from tests.mission.voxel_room import (
     DEPTH,
     OCCLUDED,
@@ -53,7 +54,7 @@ def plan(
         floor_height=0.0,
         room=ROOM,
         failed_in_world=failed,
-        footprint=Footprint(length=1.0, width=0.55),
+        footprint=FOOTPRINT,
         parameters=parameters,
     )
 
