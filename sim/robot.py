@@ -9,6 +9,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from sim.rays import geom_name
+from sim.render.materials import materials_of, srgb_from_linear
+from sim.render.visibility import VISUAL_GROUPS
 from sim.scene import FOOTPRINT, Scene, set_base
 from sim.shapes import triangulate
 from sim.start import upright_pose
@@ -16,7 +18,6 @@ from sim.start import upright_pose
 _LEFT = ("left_front", "left_middle", "left_rear")
 _RIGHT = ("right_front", "right_middle", "right_rear")
 _ENCODERS = ("left_middle", "right_middle")
-_VISUAL_GROUPS = 3
 _STANDING = 0.7
 """Cosine between a contact's normal and the vertical from which on a wheel stands on what it touches."""
 
@@ -151,16 +152,17 @@ class Robot:
     def shape(self) -> RobotShape:
         """The robot's visible surface."""
         vertices, triangles, colours = [], [], []
+        drawn_in = np.round(255 * srgb_from_linear(materials_of(self._model).colour))
         base_from_world = np.linalg.inv(self.true_world_from_base)
         count = 0
         for geom in np.flatnonzero(np.isin(self._model.geom_bodyid, sorted(self._bodies))):
-            if self._model.geom_group[geom] >= _VISUAL_GROUPS:
+            if self._model.geom_group[geom] >= VISUAL_GROUPS:
                 continue
             points, faces = triangulate(self._model, int(geom))
             in_world = points @ self._data.geom_xmat[geom].reshape(3, 3).T + self._data.geom_xpos[geom]
             vertices.append(in_world @ base_from_world[:3, :3].T + base_from_world[:3, 3])
             triangles.append(faces + count)
-            colours.append(np.tile(self._colour(int(geom)), (len(points), 1)))
+            colours.append(np.tile(drawn_in[geom], (len(points), 1)))
             count += len(points)
         return RobotShape(
             np.concatenate(vertices).astype(np.float32),
@@ -200,8 +202,3 @@ class Robot:
         world_from_site = np.eye(4)
         world_from_site[:3, :3], world_from_site[:3, 3] = site.xmat.reshape(3, 3), site.xpos
         return np.linalg.inv(self.true_world_from_base) @ world_from_site
-
-    def _colour(self, geom: int) -> np.ndarray:
-        material = int(self._model.geom_matid[geom])
-        rgba = self._model.mat_rgba[material] if material >= 0 else self._model.geom_rgba[geom]
-        return np.round(255 * rgba[:3])

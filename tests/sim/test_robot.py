@@ -191,6 +191,17 @@ def test_its_drawn_shape_is_closed_and_lies_within_its_footprint(tmp_path: Path)
     np.testing.assert_allclose([*low, *high], [-length / 2, -width / 2, 0, length / 2, width / 2, 1.43], atol=0.01)
 
 
+def test_it_is_drawn_in_the_colours_that_are_rendered(tmp_path: Path) -> None:
+    scene = hall(tmp_path)
+    (lid,) = (
+        geom for geom in range(scene.model.ngeom) if np.allclose(scene.model.geom_size[geom], [0.4855, 0.2605, 0.035])
+    )
+    assert (robot_in(scene).shape().colours == [219, 92, 20]).all(axis=1).any()  # of its material: 0.86 0.36 0.08
+    scene.model.geom_rgba[lid] = [0.2, 0.4, 0.6, 1]  # overrides the material
+    colours = robot_in(scene).shape().colours
+    assert (colours == [51, 102, 153]).all(axis=1).sum() == 8  # the corners of a box
+
+
 def test_a_door_can_be_bumped_into_and_gives_way(tmp_path: Path) -> None:
     leaf = """<body name="leaf" pos="1.5 0.45 0"><joint name="leaf" axis="0 0 1" range="0 100" damping="1"/>
       <geom name="panel" type="box" pos="0 -0.4 1.02" size="0.02 0.4 1" mass="20"/></body>"""
