@@ -17,7 +17,7 @@ from detector.result import Image, Mask, Orthoimage
 FOOT = 0.3
 """The sides of a door reach the floor; those of a panel in it do not: tested over this height [m]."""
 FOOT_SUPPORT = 0.4
-STRIP = (0.01, 0.1)
+STRIP = (0.01, 0.06)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
 FAINT_COLOUR = 0.008
 """Least difference of colour on all sides that sets a surface apart, of 1: two grey values."""

@@ -33,7 +33,7 @@ OTHER_LEAF = (0.4, 1.3)
 """Width of the second leaf of a double door [m]."""
 FAIRLY_SET, WELL_SET = 0.5, 0.7
 """Least share of wall along each side's outside, and the share that leaves no doubt about the side."""
-SUPPORT_SLACK = 0.15
+SUPPORT_SLACK = 0.06
 """Sums of support that differ by less do not tell which of two lines is the side."""
 OPEN_SHARE = 0.15
 """A rectangle that is looked through over more than this share is open."""
