@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from types import TracebackType
 from typing import Self
 
@@ -33,13 +34,15 @@ class Mopad:
         """
         scanner, camera, hokuyo, robot = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4))
         self._scene = scene
-        self._renderer = Renderer(scene.model, hidden_bodies=scene.robot_bodies)
-        self._scanner, self._scanner_rng = Scanner(self._renderer, config.scanner), scanner
-        self._camera, self._camera_rng = Camera(self._renderer, config.camera), camera
         self._hokuyo, self._hokuyo_rng = Hokuyo(scene.model, scene.robot_bodies, config.hokuyo), hokuyo
         self.robot = Robot(scene, config.robot, robot)
         self.world_from_odometry: Pose = np.eye(4)
         """What registration and localisation correct the odometry by."""
+        with ExitStack() as stack:  # what fails from here on closes the renderer
+            renderer = stack.enter_context(Renderer(scene.model, hidden_bodies=scene.robot_bodies))
+            self._scanner, self._scanner_rng = Scanner(renderer, config.scanner), scanner
+            self._camera, self._camera_rng = Camera(renderer, config.camera), camera
+            self._owned = stack.pop_all()
 
     def __enter__(self) -> Self:
         return self
@@ -47,7 +50,7 @@ class Mopad:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._renderer.close()
+        self._owned.close()
 
     @property
     def time(self) -> int:

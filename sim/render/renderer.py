@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from types import TracebackType
 
@@ -72,10 +72,14 @@ class Renderer:
         self._needs_flattening = _needs_flattening(model)
         if model.ngeom + model.nflex + model.nskin > _MAX_SEGMENTS:
             raise SimError(f"the scene has {model.ngeom} geoms; the sensors tell at most {_MAX_SEGMENTS} apart")
-        self._context = make_context()
-        with self._own_visual_settings():
+        with ExitStack() as stack, self._own_visual_settings():
+            self._context = make_context()
+            stack.callback(self._context.free)
             self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + model.nflex + model.nskin + 1)
             self._mjr = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_50.value)
+            stack.callback(self._mjr.free)
+            stack.callback(self._context.make_current)
+            self._owned = stack.pop_all()
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._mjr)
         self._mjr.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
         self._option = _options()
@@ -115,11 +119,7 @@ class Renderer:
 
     def close(self) -> None:
         """Frees the context; the renderer is of no use afterwards."""
-        if self._context is not None:
-            self._context.make_current()
-            self._mjr.free()
-            self._context.free()
-            self._context = None
+        self._owned.close()
 
     def __enter__(self) -> Renderer:
         return self

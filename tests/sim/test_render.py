@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import mujoco
 import numpy as np
 import pytest
 
@@ -45,6 +48,26 @@ def test_the_clip_planes_do_not_depend_on_the_scene(world, renderer_of):
     model, data = world('<geom size=".1" pos="0 0 5000"/><geom type="box" size=".1 1 1" pos=".2 0 0"/>')
     renderer = renderer_of(model)
     assert metres(renderer, renderer.depth(data, view_from([0, 0, 0])).raw[100, 100]) == pytest.approx(0.1, abs=1e-6)
+
+
+def test_a_renderer_that_fails_to_start_frees_its_context(world, monkeypatch):
+    freed = []
+    context = SimpleNamespace(make_current=lambda: None, free=lambda: freed.append("context"))
+
+    def refuse(*_):
+        raise mujoco.FatalError("no framebuffer")
+
+    monkeypatch.setattr("sim.render.renderer.make_context", lambda: context)
+    monkeypatch.setattr(mujoco, "MjrContext", refuse)
+    with pytest.raises(mujoco.FatalError):
+        Renderer(world('<geom size=".1"/>')[0])
+    assert freed == ["context"]
+
+
+def test_a_renderer_may_be_closed_twice(world):
+    renderer = Renderer(world('<geom size=".1"/>')[0])
+    renderer.close()
+    renderer.close()
 
 
 def test_segments_name_the_geom(world, renderer_of):
