@@ -26,6 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
 
         return run(options)
     except KeyboardInterrupt:
+        print("interrupted before the mission began", file=sys.stderr)
         return 130
 
 
@@ -58,14 +59,16 @@ def parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     run.add_argument("scene", metavar="SCENE", help="MJCF file; a bare name is also looked up in assets/rooms/")
-    run.add_argument("--out", type=Path, metavar="DIR", help="folder for the results (default: runs/<scene>-<n>)")
+    run.add_argument(
+        "--out", metavar="DIR", help="folder for the results, replaced if they exist (default: runs/<scene>-<n>)"
+    )
     run.add_argument("--seed", type=_seed, default=0, metavar="N", help="seed of all noise (default: 0)")
     run.add_argument(
         "--door",
         action="append",
         default=[],
         metavar="NAME=DEG",
-        help="open a door of the scene to an angle from closed; may be repeated",
+        help="open a door of the scene to an angle from closed; a wrong NAME lists the right ones; may be repeated",
     )
     run.add_argument("--keyframe", metavar="NAME", help="start from a keyframe of the scene (default: the first)")
     run.add_argument("--max-scans", type=_positive, metavar="N", help="at most so many scans")
@@ -82,7 +85,8 @@ def parser() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="METRIC=VALUE",
-        help="exit 1 if recall, precision, found (share of the doors) or coverage is below; may be repeated",
+        help="exit 1 if recall, precision, found (share of the doors) or coverage (of the walls) is below a VALUE "
+        "of 0 to 1; may be repeated",
     )
     how = run.add_mutually_exclusive_group()
     how.add_argument("--quiet", action="store_true", help="say nothing but errors")

@@ -16,6 +16,7 @@ from mission.events import (
     DoorsEvaluated,
     Drove,
     Event,
+    Labelled,
     MissionFinished,
     MissionStarted,
     Planned,
@@ -59,11 +60,14 @@ class TerminalProgress:
         match event:
             case MissionStarted():
                 x, y = event.world_from_base[:2, 3]
+                self._console.print("[dim]mission time[/dim]")
                 self._say(event, f"[bold]{event.scene}[/bold], seed {event.seed}: MoPAD starts at ({x:.2f}, {y:.2f})")
             case Registered():
                 x, y = event.world_from_scanner[:2, 3]
                 fit = event.reason if event.rmse == 0 or not event.accepted else f"residual {event.rmse * 1e3:.1f} mm"
                 self._say(event, f"scan {event.scan_number} at ({x:.2f}, {y:.2f}): {fit}")
+            case Labelled():
+                self._progress.update(self._task, completed=100 * event.voxels.coverage)
             case Planned():
                 self._planned(event)
             case Drove() if not event.arrived:
@@ -77,20 +81,22 @@ class TerminalProgress:
 
     def _planned(self, event: Planned) -> None:
         plan = event.plan
-        self._progress.update(self._task, completed=100 * plan.coverage)
         if plan.chosen is None:
-            self._say(event, f"room {event.room} complete: {plan.stop_reason}, {plan.coverage:.0%} of the walls seen")
+            self._say(
+                event,
+                f"room {event.room} complete: {plan.stop_reason}, {plan.coverage:.0%} of walls, floor and ceiling seen",
+            )
             return
         chosen = plan.candidates[plan.chosen]
         x, y = chosen.position
         self._say(
             event,
             f"next best scan at ({x:.2f}, {y:.2f}), {chosen.travel:.1f} m away, "
-            f"of {len(plan.candidates)} candidates; {plan.coverage:.0%} of the walls seen",
+            f"of {len(plan.candidates)} candidates; {plan.coverage:.0%} of walls, floor and ceiling seen",
         )
 
     def _say(self, event: Event, text: str) -> None:
-        self._console.print(f"[dim]{event.time / 1e9:6.0f} s[/dim]  {text}", highlight=False, soft_wrap=True)
+        self._console.print(f"[dim]{event.time / 1e9:10.0f} s[/dim]  {text}", highlight=False, soft_wrap=True)
 
 
 def doors_table(event: DoorsEvaluated) -> Table:
@@ -127,4 +133,4 @@ def _row(evaluation: DoorEvaluation) -> list[str]:
 
 
 def _degrees(angle: float | None) -> str:
-    return "-" if angle is None or np.isnan(angle) else f"{np.degrees(angle):.1f}°"
+    return "-" if angle is None or np.isnan(angle) else f"{round(float(np.degrees(angle)), 1) + 0.0:.1f}°"

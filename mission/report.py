@@ -19,6 +19,7 @@ from mission.events import (
     DoorsEvaluated,
     Drove,
     Event,
+    Labelled,
     MissionFinished,
     MissionStarted,
     Planned,
@@ -39,6 +40,7 @@ class RoomReport:
     walls: int = 0
     scans: int = 0
     coverage: float = 0.0
+    """Share of the walls' area that was seen."""
     stop_reason: str | None = None
     doors: tuple[DoorEvaluation, ...] = ()
     missed: tuple[str, ...] = ()
@@ -67,8 +69,10 @@ class Report:
                 room.scans += 1
             case Structured():
                 room.walls = len(event.structure.walls)
+            case Labelled():
+                room.coverage = event.voxels.coverage
             case Planned():
-                room.coverage, room.stop_reason = event.plan.coverage, event.plan.stop_reason
+                room.stop_reason = event.plan.stop_reason
             case Drove():
                 steps = np.diff(event.world_from_base[:, :2, 3], axis=0)
                 self.metres += float(np.linalg.norm(steps, axis=1).sum())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import json
 import logging
 import math
@@ -103,7 +104,8 @@ def carry_out(
 
 def _write_reports(folder: Path, report: Report, stopwatch: Stopwatch, start: float) -> None:
     write_json(folder / "doors.json", report.doors())
-    write_json(folder / "summary.json", report.summary(stopwatch.seconds, perf_counter() - start))
+    summary = report.summary(stopwatch.seconds, perf_counter() - start)
+    write_json(folder / "summary.json", {"arguments": sys.argv[1:]} | summary)
 
 
 def _pump(mission: Mission, sinks: list[Sink], interrupts: Interrupts, stopwatch: Stopwatch) -> int:
@@ -155,11 +157,15 @@ def find_scene(scene: str) -> Path:
     for path in (Path(scene), rooms / scene):
         if path.is_file():
             return path
-    shipped = ", ".join(sorted(path.name for path in rooms.glob("*.xml")))
-    raise UsageError(f"no such scene: {scene} (shipped scenes: {shipped})")
+    if scene and Path(scene).is_dir():
+        raise UsageError(f"the scene is a folder, not an MJCF file: {scene}")
+    shipped = sorted(path.name for path in rooms.glob("*.xml"))
+    close = difflib.get_close_matches(scene, shipped, n=1)
+    hint = f"did you mean {close[0]}?" if close else f"shipped scenes: {', '.join(shipped)}"
+    raise UsageError(f"no such scene: {scene!r} ({hint})")
 
 
-def make_folder(out: Path | None, *, scene_name: str) -> Path:
+def make_folder(out: str | None, *, scene_name: str) -> Path:
     """Make the folder for the results.
 
     Raises:
@@ -168,11 +174,14 @@ def make_folder(out: Path | None, *, scene_name: str) -> Path:
     try:
         if out is None:
             return _numbered(Path("runs"), Path(scene_name).stem)
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "mission.rrd").open("ab").close()  # can it be written?
+        if not out:
+            raise UsageError("--out: the name of the folder is empty")
+        folder = Path(out)
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "mission.rrd").open("ab").close()  # can it be written?
     except OSError as error:
         raise UsageError(f"cannot write the results: {error.strerror}: {error.filename}") from error
-    return out
+    return folder
 
 
 def _numbered(runs: Path, stem: str) -> Path:
@@ -200,9 +209,11 @@ def _setting(option: str, text: str) -> tuple[str, float]:
 
 
 def _check_metrics(bars: Mapping[str, float]) -> None:
-    for name in bars:
+    for name, bar in bars.items():
         if name not in METRICS:
             raise UsageError(f"--fail-under {name}: unknown metric; known: {', '.join(METRICS)}")
+        if not 0 <= bar <= 1:
+            raise UsageError(f"--fail-under {name}={bar:g}: expected a share from 0 to 1")
 
 
 def _judge(report: Report, bars: Mapping[str, float]) -> int:

@@ -9,11 +9,8 @@ import rerun as rr
 
 from mission.events import Event, Labelled, Planned, Structured
 from mission.recording import entities
-from mission.recording.drawing import score_colours
-from mission.recording.rerun_world import LIFT, PLAN_COLOUR
-
-GRID_COLOURS = np.array([(0, 0, 0, 0), (90, 200, 110, 70), (230, 60, 60, 160)], np.uint8)
-"""Unknown, free and occupied cells."""
+from mission.recording.drawing import CELL_COLOURS, score_colours
+from mission.recording.rerun_world import LIFT, PLAN_COLOUR, hover
 
 CLUTTER_COLOUR = (190, 110, 60)
 
@@ -74,7 +71,7 @@ class Plans:
                 colors=np.where(possible[:, None], score_colours(scores), np.uint8(90)),
                 radii=rr.Radius.ui_points(np.where(possible, 4.5, 2.0)),
             ),
-            rr.AnyValues(
+            *hover(
                 score=scores,
                 gain_m2=np.array([candidate.gain for candidate in candidates], float),
                 quality_m2=np.array([candidate.quality for candidate in candidates], float),
@@ -104,7 +101,7 @@ class Plans:
     def _draw_grid(self, event: Planned) -> None:
         """The occupancy grid, lying on the floor."""
         grid = event.grid
-        image = np.ascontiguousarray(GRID_COLOURS[np.minimum(grid.cells, 2)][::-1])  # Rerun wants the top row first
+        image = np.ascontiguousarray(CELL_COLOURS[np.minimum(grid.cells, 2)][::-1])  # Rerun wants the top row first
         height, width = grid.cells.shape
         shape = rr.components.ImageFormat(width=width, height=height, color_model="RGBA", channel_datatype="U8")
         corner = (grid.origin[0], grid.origin[1], self._floor + LIFT / 2)

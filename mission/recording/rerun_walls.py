@@ -15,6 +15,7 @@ from detector.result import Candidate, Highlights, Orthoimage, Rectangle, WallRe
 from mission.events import DoorsDetected, Event
 from mission.recording import entities
 from mission.recording.drawing import jpeg
+from mission.recording.rerun_world import hover
 
 ACCEPTED, REJECTED = (70, 210, 90), (235, 70, 70)
 LINE = (255, 120, 40)
@@ -126,9 +127,9 @@ def _draw_search(rec: rr.RecordingStream, entity: str, result: WallResult) -> No
     rec.log(f"{entity}/edges/lines", _lines(classes.shape, search.horizontal_lines, search.vertical_lines))
     shown = shown_candidates(search.candidates)
     columns = ("dominant_colour_share", "dominant_depth_share", "wall_share")
-    hover: dict[str, Any] = {name: np.array([getattr(c, name) for c in shown], float) for name in columns}
-    hover["least_side_support"] = np.array([min(c.side_support) for c in shown], float)
-    rec.log(f"{entity}/candidates/boxes", rr.AnyValues(**hover))
+    shares: dict[str, Any] = {name: np.array([getattr(c, name) for c in shown], float) for name in columns}
+    shares["least_side_support"] = np.array([min(c.side_support) for c in shown], float)
+    rec.log(f"{entity}/candidates/boxes", *hover(**shares))
     _draw_boxes(
         rec,
         f"{entity}/candidates",

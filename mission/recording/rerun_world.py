@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import singledispatchmethod
+from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -20,14 +21,12 @@ from mission.events import (
     Structured,
 )
 from mission.recording import entities
-from mission.recording.drawing import display_colours, on_grid, outline, thin
+from mission.recording.drawing import TRUTH_COLOUR, WALL_COLOUR, display_colours, on_grid, outline, thin
 from mission.recording.entities import child
 from mission.rigid import inverted
 
 PATH_COLOUR = (255, 120, 40)
 PLAN_COLOUR = (80, 200, 255)
-TRUTH_COLOUR = (255, 255, 255)
-WALL_COLOUR = (120, 160, 220)
 LASER_COLOUR = (255, 60, 60)
 LIFT = 0.03
 """Lines on the floor are drawn this much above it, or the floor's points bury them [m]."""
@@ -181,3 +180,11 @@ class World:
     ) -> None:
         line = np.column_stack([way, np.full(len(way), self._floor + LIFT)])
         self._rec.log(entity, rr.LineStrips3D([line], colors=colour, radii=radius))
+
+
+def hover(**columns: Any) -> list[rr.AnyValues]:
+    """Values that the viewer shows under the pointer, a row an instance; nothing where there is no row.
+
+    Rerun refuses columns without a row.
+    """
+    return [rr.AnyValues(**columns)] if any(len(column) for column in columns.values()) else []

@@ -21,6 +21,7 @@ from mission.recording.drawing import (
     thin,
 )
 from mission.recording.mcap_schemas import file_descriptor
+from mission.recording.rerun_world import hover
 from mission.recording.sentences import level, sentence
 from tests.mission.recording_room import JOINT, door, evaluation, walls
 from tests.mission.recording_story import story
@@ -120,3 +121,8 @@ def test_a_leg_that_ends_early_is_a_warning_that_says_how_it_ended() -> None:
     bumped = replace(leg, outcome="contact", reason="touched kerb")
     assert level(bumped) == "WARN"
     assert sentence(bumped).endswith("contact: touched kerb")
+
+
+def test_nothing_hovers_where_there_is_no_row() -> None:
+    assert hover(score=np.zeros(0), rejected=[]) == []
+    assert len(hover(score=np.zeros(1), rejected=["far"])) == 1
