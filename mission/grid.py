@@ -3,9 +3,9 @@
 A cell is free only on evidence that the whole column over it is empty up to the robot's height: the scanner saw its
 floor and nothing above it (a beam from above that reaches the floor, and a table top that gives points in the same
 cell). The scanner sees neither floor nor obstacle in a disc around itself (1.19 times its height: its field of view
-ends at -40 deg, and its range starts at 1.5 m); there the Hokuyos speak, whose plane is some 0.4 m high. What
-stands in that disc above or below their plane betrays itself by its shadow on the floor beyond: such sectors stay
-unknown.
+ends at -40 deg, and its range starts at 1.5 m); there the Hokuyos speak, whose planes are 0.47 and
+0.49 m high. What stands in that disc above or below their planes betrays itself by its shadow on the floor beyond:
+such sectors stay unknown.
 """
 
 from __future__ import annotations

@@ -33,6 +33,7 @@ from mission.events import (
 )
 from mission.explored_room import ExploredRoom
 from mission.grid import Footprint
+from mission.joints import opening
 from mission.localisation import localise
 from mission.mopad import Mopad
 from mission.registration import Registrar
@@ -42,7 +43,6 @@ from mission.stopwatch import Stopwatch
 from mission.structure import Structure
 from mission.versions import versions
 from mission.voxels import VoxelModel, room_from
-from sim.doors import DoorTruth
 from sim.scene import Scene
 
 MAX_DETOURS = 3
@@ -200,7 +200,7 @@ class Mission:
 
         def watch() -> None:
             truth.append(mopad.robot.true_world_from_base)
-            angles.append([_opening(door) for door in self._scene.true_doors()])
+            angles.append([opening(door) for door in self._scene.true_doors()])
 
         laser_height = mopad.robot.base_from_lasers[0][2, 3]
         laser_map = self._room.laser_map(floor_height + laser_height)
@@ -255,8 +255,3 @@ class Mission:
         event = kind(step=self._steps, time=self._mopad.time, room=self._room.number, **content)
         self._steps += 1
         return event
-
-
-def _opening(door: DoorTruth) -> float:
-    """Opening of the wider leaf, as an angle [rad], or of a sliding one [m]."""
-    return max(leaf.opening if np.isnan(leaf.opening_angle) else leaf.opening_angle for leaf in door.leaves)

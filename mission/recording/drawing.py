@@ -13,7 +13,6 @@ from detector.room import VoxelLabel
 
 if TYPE_CHECKING:
     from mission.evaluation import DoorEvaluation
-    from sim.doors import DoorTruth
 
 GRID = 512.0
 """Recorded coordinates are multiples of 1/512 m: at most 1 mm off per axis (0.6 mm rms), a fifth of the scanner's
@@ -40,7 +39,14 @@ LABEL_COLOURS = {
     VoxelLabel.OPENING: (250, 200, 40),
 }
 
-JPEG_QUALITY = 90
+CELL_COLOURS = np.array([(0, 0, 0, 0), (90, 200, 110, 70), (230, 60, 60, 160)], np.uint8)
+"""Red, green, blue and opacity of unknown, free and occupied cells of the grid."""
+
+WALL_COLOUR = (120, 160, 220)
+TRUTH_COLOUR = (255, 255, 255)
+
+DISPLAY_QUALITY, ARCHIVE_QUALITY = 90, 95
+"""JPEG: of pictures to look at, and of photographs that are kept for the machine."""
 
 
 class Outlined(Protocol):
@@ -166,14 +172,7 @@ def angle_label(evaluation: DoorEvaluation) -> str:
     return f"{degrees(evaluation.door.opening_angle)} deg ({truth})"
 
 
-def opening(door: DoorTruth) -> float:
-    """How far a true door stands open: its wider leaf [rad], or its way along the slide [m]."""
-    if door.kind == "sliding":
-        return max(leaf.opening for leaf in door.leaves)
-    return max(leaf.opening_angle for leaf in door.leaves)
-
-
-def jpeg(image: NDArray[np.uint8], *, quality: int = JPEG_QUALITY) -> bytes:
+def jpeg(image: NDArray[np.uint8], *, quality: int = DISPLAY_QUALITY) -> bytes:
     """An sRGB image (H, W, 3) or a grey one (H, W) as JPEG."""
     bgr = image if image.ndim == 2 else np.ascontiguousarray(image[:, :, ::-1])  # OpenCV has blue first
     ok, data = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])

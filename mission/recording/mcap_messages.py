@@ -29,7 +29,7 @@ from foxglove.messages import (
 )
 from numpy.typing import NDArray
 
-from mission.recording.drawing import UNCOLOURED, jpeg, on_grid
+from mission.recording.drawing import ARCHIVE_QUALITY, CELL_COLOURS, UNCOLOURED, jpeg, on_grid
 
 MAP = "map"
 """Frame of the scene's world, in which the mission's map is made."""
@@ -39,10 +39,7 @@ SEEN, UNSEEN = 255, 254
 
 RGBA = ("red", "green", "blue", "alpha")
 """Names that viewers look for."""
-CELL_COLOURS = np.array([(0, 0, 0, 0), (90, 200, 110, 70), (230, 60, 60, 160)], np.uint8)
-"""Of unknown, free and occupied cells of the grid."""
 
-JPEG_QUALITY = 95
 _BLOCK = 1 << 16
 _FLOAT, _BYTE = PackedElementFieldNumericType.Float32, PackedElementFieldNumericType.Uint8
 
@@ -135,7 +132,7 @@ def _packed(points_in_world: NDArray[np.float32], colours: NDArray[np.uint8], co
 def photograph(time: int, frame: str, image: NDArray[np.uint8]) -> CompressedImage:
     """A photograph as JPEG."""
     return CompressedImage(
-        timestamp=timestamp(time), frame_id=frame, data=jpeg(image, quality=JPEG_QUALITY), format="jpeg"
+        timestamp=timestamp(time), frame_id=frame, data=jpeg(image, quality=ARCHIVE_QUALITY), format="jpeg"
     )
 
 

@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 from detector.result import Door, WallResult
 from mission.events import DoorsDetected, DoorsEvaluated, Drove, Labelled, Planned, Registered, Structured
 from mission.recording import mcap_messages as messages
-from mission.recording.drawing import Outlined, angle_label, closed, outline, palette, quads
+from mission.recording.drawing import TRUTH_COLOUR, WALL_COLOUR, Outlined, angle_label, closed, outline, palette, quads
 
 if TYPE_CHECKING:
     from mission.evaluation import DoorEvaluation
     from mission.planning import ScanCandidate
     from sim.robot import RobotShape
 
-WALL_COLOUR = (120, 160, 220)
-TRUTH_COLOUR = (255, 255, 255)
 NAN = float("nan")
 
 

@@ -36,9 +36,10 @@ from mission.events import (
     Registered,
     Structured,
 )
+from mission.joints import opening
 from mission.recording import mcap_messages as messages
 from mission.recording import mcap_records as records
-from mission.recording.drawing import label_colours, opening
+from mission.recording.drawing import label_colours
 from mission.recording.mcap_messages import MAP
 from mission.recording.mcap_topics import open_channels
 from mission.recording.sentences import level, sentence
@@ -56,8 +57,8 @@ class McapSink:
     """Writes every event to an MCAP file as it happens.
 
     Log times are mission time since `EPOCH` plus a microsecond an event, strictly increasing over the file; timestamps
-    inside messages are mission time alone. Nothing of wall clock, host or path goes in, and compression runs on a fixed
-    number of threads, so two runs of one mission give the same bytes.
+    inside messages are mission time since `EPOCH` and no more. Nothing of wall clock, host or path goes in, and
+    compression runs on a fixed number of threads, so two runs of one mission give the same bytes.
     """
 
     def __init__(self, path: Path) -> None:

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from mission.evaluation import DoorEvaluation
 from mission.events import DoorsEvaluated, Drove, Event, MissionStarted, Photographed, Pose, Registered
 from mission.recording import entities
-from mission.recording.drawing import angle_label, closed, jpeg, palette, quads, shrink
+from mission.recording.drawing import TRUTH_COLOUR, angle_label, closed, jpeg, palette, quads, shrink
 from mission.recording.entities import child
-from mission.recording.rerun_world import TRUTH_COLOUR, log_pose
+from mission.recording.rerun_world import log_pose
 from mission.rigid import inverted
 
 if TYPE_CHECKING:

@@ -20,8 +20,9 @@ from mission.events import (
     Planned,
     Scanned,
 )
+from mission.joints import opening
 from mission.recording import entities
-from mission.recording.drawing import opening, palette
+from mission.recording.drawing import palette
 from mission.recording.entities import child
 from mission.recording.sentences import level, sentence
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -23,6 +25,8 @@ from mission.recording.rerun_world import World
 
 APPLICATION = "door-mission"
 
+_Drawer = World | Plans | Doors | Walls | Plots | Results
+
 
 class RerunSink:
     """Writes every event to an .rrd file as it happens; the layout of the viewer is inside.
@@ -32,8 +36,10 @@ class RerunSink:
     """
 
     def __init__(self, path: Path) -> None:
-        """Record into a file, which is overwritten."""
+        """Record into a file, which is overwritten; it is opened by the first event."""
         self._path = path
+        self._closing = ExitStack()
+        self._drawers: list[_Drawer] = []
         self._scan_number = 0
         self._outlook = outlook(np.zeros((1, 3)))
         self._walls: list[WallTab] = []
@@ -41,31 +47,21 @@ class RerunSink:
         self._known_rooms: set[int] = set()
 
     def __enter__(self) -> Self:
+        self._closing.callback(rr.set_strict_mode, rr.strict_mode())  # it is global, and not ours
         rr.set_strict_mode(True)  # a mistake in what is logged is an error, not a warning nobody reads
-        where = self._path.resolve()
-        self._rec = rr.RecordingStream(APPLICATION, recording_id=f"{where.parent.name}-{where.stem}")
-        self._rec.set_log_time_enabled(False)
-        self._rec.save(self._path)
-        legend = rr.AnnotationContext(
-            [rr.AnnotationInfo(number, label, colour) for number, label, colour in entities.LEGEND]
-        )
-        for place in (entities.WORLD, entities.STAGES_OF_WALLS):
-            self._rec.log(place, legend, static=True)
-        self._drawers = [drawer(self._rec) for drawer in (World, Plans, Doors, Walls, Plots, Results)]
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        try:
+        with self._closing:
             if self._shown != tuple(self._walls):
                 self._send_layout(self._walls)
-            self._rec.flush()
-        finally:
-            self._rec.disconnect()  # writes the footer
 
     def handle(self, event: Event) -> None:
         """Record one event; when this returns, the event is in the file."""
+        if not self._drawers:
+            self._open(event)
         self._scan_number = getattr(event, "scan_number", self._scan_number)
         self._rec.set_time("step", sequence=event.step)
         self._rec.set_time("mission_time", duration=np.timedelta64(event.time, "ns"))
@@ -75,6 +71,20 @@ class RerunSink:
             drawer.draw(event)
         self._lay_out(event)
         self._rec.flush()
+
+    def _open(self, first: Event) -> None:
+        """Open the file; its id tells the viewer whether two recordings are one."""
+        mission = (Path(first.scene).stem, str(first.seed)) if isinstance(first, MissionStarted) else ()
+        place = hashlib.sha256(str(self._path.resolve()).encode()).hexdigest()[:8]
+        self._rec = rec = rr.RecordingStream(APPLICATION, recording_id="-".join([*mission, place]))
+        rec.set_log_time_enabled(False)
+        rec.save(self._path)
+        self._closing.callback(rec.disconnect)  # writes the footer
+        self._closing.callback(rec.flush)
+        legend = [rr.AnnotationInfo(number, label, colour) for number, label, colour in entities.LEGEND]
+        for root in (entities.WORLD, entities.STAGES_OF_WALLS):
+            rec.log(root, rr.AnnotationContext(legend), static=True)
+        self._drawers = [drawer(rec) for drawer in (World, Plans, Doors, Walls, Plots, Results)]
 
     def _lay_out(self, event: Event) -> None:
         """Fit the viewer's layout to what is known by now: an interrupted recording opens well, too.

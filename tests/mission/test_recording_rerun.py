@@ -11,15 +11,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rerun as rr
 from numpy.typing import NDArray
 from rerun.chunk import RrdReader
 
 from detector.result import Candidate, Rectangle
-from mission.events import Coloured, DoorsDetected, DoorsEvaluated, Drove, Event, MissionStarted
+from mission.events import Coloured, DoorsDetected, DoorsEvaluated, Drove, Event, MissionFinished, MissionStarted
 from mission.recording.blueprint import outlook
 from mission.recording.rerun_doors import Shot
 from mission.recording.rerun_sink import RerunSink
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
+from mission.recording.sentences import sentence
 from tests.mission.recording_room import ESTIMATE, JOINT, view
 from tests.mission.recording_story import bare_story, story
 
@@ -87,6 +89,34 @@ def test_every_handled_event_is_in_the_file_before_it_is_closed(tmp_path: Path) 
     with pytest.warns(match="no footer"):
         chunks = RrdReader(killed).stream().filter(content="/log").to_chunks()
     assert sum(chunk.num_rows for chunk in chunks) == 5
+
+
+def test_two_missions_are_two_recordings_to_a_viewer_that_shows_both(tmp_path: Path) -> None:
+    start = event_of(MissionStarted)
+    ids = set()
+    for folder in ("a/try", "b/try"):
+        (tmp_path / folder).mkdir(parents=True)
+        path = record(tmp_path / folder / "mission.rrd", [start])
+        ids |= {store.recording_id for store in RrdReader(path).recordings()}
+    again = record(path, [replace(start, seed=4)])  # while the viewer is open
+    ids |= {store.recording_id for store in RrdReader(again).recordings()}
+    assert len(ids) == 3
+    assert all("made_up" in identity for identity in ids)
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_strict_mode_is_left_as_it_was_found(tmp_path: Path, before: bool) -> None:
+    rr.set_strict_mode(before)
+    try:
+        record(tmp_path / "mission.rrd", story()[:2])
+        assert rr.strict_mode() == before
+    finally:
+        rr.set_strict_mode(False)
+
+
+def test_a_mission_that_ends_before_it_started_is_recorded(tmp_path: Path) -> None:
+    end = event_of(MissionFinished)
+    assert column(record(tmp_path / "end.rrd", [end]), "/log", "TextLog:text") == [[sentence(end)]]
 
 
 def test_whatever_changes_is_on_all_timelines(recording: Path) -> None:
