@@ -156,7 +156,8 @@ def _near_directions(scan: PosedSample, scans: Sequence[PosedSample], parameters
     """Grid of directions (elevation, azimuth) in which some scan found something too close for this one."""
     from scipy.ndimage import binary_dilation
 
-    grid = np.zeros((int(np.pi / parameters.shadow) + 1, int(2 * np.pi / parameters.shadow) + 1), bool)
+    rows, columns = _grid_shape(parameters)
+    grid = np.zeros((rows, columns), bool)
     reach = parameters.minimum_range + 0.1
     for other in scans:
         offset = other.points_in_world - scan.scanner_in_world.astype(np.float32)
@@ -166,12 +167,18 @@ def _near_directions(scan: PosedSample, scans: Sequence[PosedSample], parameters
     return binary_dilation(around, np.ones((3, 3), bool))[:, 1:-1]
 
 
+def _grid_shape(parameters: VisibilityParameters) -> tuple[int, int]:
+    """Rows of elevation and columns of azimuth; a whole number of columns, so that the last meets the first."""
+    return int(np.pi / parameters.shadow) + 1, round(2 * np.pi / parameters.shadow)
+
+
 def _direction_cells(
     scan: PosedSample, places: NDArray[np.floating], parameters: VisibilityParameters
 ) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
     x, y, z = transformed(places.astype(float), inverted(scan.world_from_scanner)).T
     elevation, azimuth = np.arctan2(z, np.hypot(x, y)), np.arctan2(y, x)
+    columns = _grid_shape(parameters)[1]
     return (
         ((elevation + np.pi / 2) / parameters.shadow).astype(int),
-        ((azimuth + np.pi) / parameters.shadow).astype(int),
+        ((azimuth + np.pi) / (2 * np.pi) * columns).astype(int) % columns,
     )

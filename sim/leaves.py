@@ -120,6 +120,8 @@ def _slab(
     normals = cross / np.maximum(2 * area, 1e-12)[:, None]
     facing = _main_normal(normals, area)
     parallel = (np.abs(normals @ facing) > _PARALLEL) & (area > 0)
+    if not parallel.any():  # a cone or a pyramid has no upright face
+        return None
     offsets = corners.mean(1) @ facing
     back, front = _weighted_quantiles(offsets[parallel], area[parallel], (0.05, 0.95))
     flat = parallel & (offsets > back - 0.005) & (offsets < front + 0.005)

@@ -79,6 +79,7 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
     Raises:
         SimError: one line that says what is wrong with the scene, the keyframe, the doors or the start, and where.
     """
+    mujoco.set_mju_user_warning(_warn)  # MuJoCo's own way is a file in the user's folder
     spec = _read(path)
     held = _robot_prefix(spec)
     prefix = _attach_robot(spec) if held is None else held
@@ -101,6 +102,10 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
     except SimError as error:
         raise SimError(f"scene {path}: {error}") from None
     return Scene(model, data, path.name, spec.to_xml(), doors, pose, robot_bodies, prefix)
+
+
+def _warn(text: str) -> None:
+    log.warning("MuJoCo: %s", text)
 
 
 def _read(path: Path) -> mujoco.MjSpec:

@@ -255,3 +255,15 @@ def test_a_mesh_leaf_in_a_thin_wall_of_radians_is_found(degrees: float) -> None:
     door = only(true_doors(model, data))
     assert np.degrees(door.leaves[0].opening_angle) == pytest.approx(degrees, abs=1e-3)
     np.testing.assert_allclose(np.ptp(door.corners_in_world, axis=0), [0.8, 0, 2.0], atol=1e-4)
+
+
+def test_a_pyramid_on_a_hinge_is_no_door() -> None:
+    corners = "-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0  0 0 2"
+    model = mujoco.MjModel.from_xml_string(f"""
+    <mujoco>
+      <asset><mesh name="shade" vertex="{corners}"/></asset>
+      <worldbody><body><joint axis="0 0 1"/><geom type="mesh" mesh="shade"/></body></worldbody>
+    </mujoco>""")
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert find_doors(model, data) == ()
