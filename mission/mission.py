@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from dataclasses import replace
 from functools import partial
 from types import TracebackType
 from typing import Any, Literal, Self
@@ -47,6 +48,9 @@ from sim.scene import Scene
 
 MAX_DETOURS = 3
 """So many ways in a row may end before their goal; then the room is done with what is there."""
+
+NO_ARRIVAL = "ways end early"
+"""Reason to stop, beside those of the planner."""
 
 
 class Mission:
@@ -189,7 +193,8 @@ class Mission:
             yield drove
             if drove.arrived:
                 return True
-        yield self._event(Remarked, level="warning", text=f"gave up after {MAX_DETOURS} ways that ended early")
+        stopped = replace(plan, chosen=None, path=None, stop_reason=NO_ARRIVAL)
+        yield self._event(Planned, scan_number=self._scans, plan=stopped, grid=grid)
         return False
 
     def _drive(self, path: NDArray[np.float64], floor_height: float) -> Drove:
