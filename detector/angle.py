@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,21 @@ SLICE = 0.1
 MIN_POINTS = 40
 
 
+class LeafFit(NamedTuple):
+    """A leaf that was found on one hinge side."""
+
+    leaf: Leaf
+    cover: float
+    """Share of the leaf's length that was seen."""
+    hinge_depth: float
+    """Depth of its line at the jamb [m]."""
+
+    @property
+    def likelihood(self) -> float:
+        """For comparing hinge sides: a slightly open leaf is one line from jamb to jamb, hung at the end in the wall."""
+        return self.cover - abs(self.hinge_depth)
+
+
 @dataclass(frozen=True)
 class _Line:
     """A leaf hypothesis in plan, seen from its hinge: r along the closed leaf, d into the room."""
@@ -49,7 +64,7 @@ class _Line:
 
 def fit_leaf(
     points: NDArray[np.float32], doorway: Rectangle, hinge: Literal["left", "right"], parameters: DetectorParameters
-) -> tuple[Leaf, float] | None:
+) -> LeafFit | None:
     """The open leaf on one hinge side.
 
     Args:
@@ -57,7 +72,7 @@ def fit_leaf(
         doorway: What this leaf fills when it is closed.
 
     Returns:
-        The leaf and the share of its length that was seen, or None where no line looks like a leaf.
+        The leaf, or None where no line looks like one.
     """
     width = doorway.width
     sign, corner = (1.0, doorway.left) if hinge == "left" else (-1.0, doorway.right)
@@ -118,7 +133,7 @@ def _consensus(plan: NDArray, width: float, parameters: DetectorParameters) -> _
 
 def _refine(
     plan: NDArray, v: NDArray, line: _Line, side: tuple[Literal["left", "right"], float, float], of: tuple
-) -> tuple[Leaf, float] | None:
+) -> LeafFit | None:
     """Total least squares on the inliers of the hypothesis."""
     (hinge, sign, corner), (doorway, parameters) = side, of
     angle, origin = line.angle, np.array(line.start)
@@ -151,7 +166,8 @@ def _refine(
     points = points[:: 1 + len(points) // 5000]
     cover = len(np.unique((spread / RADIAL_STEP).astype(int))) * RADIAL_STEP / doorway.width
     opens: Literal["inward", "outward"] = "inward" if angle > 0 else "outward"
-    return Leaf(hinge, abs(float(angle)), float(std), opens, points), min(cover, 1.0)
+    leaf = Leaf(hinge, abs(float(angle)), float(std), opens, points)
+    return LeafFit(leaf, min(cover, 1.0), float(origin[1] - origin[0] * np.tan(angle)))
 
 
 def _total_least_squares(plan: NDArray, angle: float) -> tuple[NDArray, float]:

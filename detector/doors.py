@@ -40,7 +40,7 @@ OPEN_SHARE = 0.15
 CLEAR_SUPPORT = 0.8
 """Support of every side and foot of an outline that cuts a rectangle out of a wall of its own colour."""
 MAX_OVERSHOOT = 0.5
-SHOWN = 60
+SHOWN = 30
 """Rejected candidates that are kept for the record."""
 JUDGED = 80
 """Candidates that reach the costly conditions at most."""
@@ -112,13 +112,14 @@ def judge(
     for i in [*survivors, *rejected]:
         box = boxes[np.array([i])]
         shares = dominance(box, scene)
+        left, above, right, below = (float(s) for s in support[i])
         reason = reasons[i] or _costly_reason(box, shares, scene, float(through[i]), parameters)
         candidates.append(
             Candidate(
                 rectangle=_rectangle(box, scene.merged.pixel_size, height, floor),
                 dominant_colour_share=shares.colour_share,
                 dominant_depth_share=shares.depth_share,
-                side_support=tuple(float(s) for s in support[i]),
+                side_support=(left, above, right, below),
                 wall_share=float(wall[i]),
                 rejected_by=reason,
                 surroundings=float(around[i].min()),

@@ -61,7 +61,7 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
 
 def colour_derivatives(merged: Orthoimage) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """(H, W, 3) change of the colour (0..1) per pixel along the columns and down the rows."""
-    colour = nearest(merged.colour, merged.coloured).astype(np.float32) / 255
+    colour = nearest(merged.colour, merged.coloured).astype(np.float32) / np.float32(255)
     return _derivatives(colour, _odd(COLOUR_ALONG, merged.pixel_size))
 
 
@@ -76,10 +76,9 @@ def _derivatives(image: NDArray[np.float32], along_px: int) -> tuple[NDArray[np.
     upright = cv2.blur(image, (1, along_px))
     level = cv2.blur(image, (along_px, 1))
     replicate = cv2.BORDER_REPLICATE
-    return (
-        cv2.filter2D(upright, cv2.CV_32F, kernel, borderType=replicate),
-        cv2.filter2D(level, cv2.CV_32F, kernel.T, borderType=replicate),
-    )
+    dx = cv2.filter2D(upright, cv2.CV_32F, kernel, borderType=replicate)
+    dy = cv2.filter2D(level, cv2.CV_32F, kernel.T, borderType=replicate)
+    return np.asarray(dx, np.float32), np.asarray(dy, np.float32)
 
 
 def di_zenzo(dx: NDArray[np.float32], dy: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -124,17 +123,12 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
     dx, dy = _derivatives(filled, _odd(ALONG, pixel_size))
     slope = _local_slope(dx, pixel_size)
     # the face of a half-open leaf slopes, and has no edges; its noise grows with the slope times the sample spacing
-    trust = 1 / (1 + SLOPE_NOISE * np.abs(slope) / pixel_size)
+    trust = np.float32(1) / (1 + np.float32(SLOPE_NOISE / pixel_size) * np.abs(slope))
     dx, dy = (dx - slope) * trust, dy * trust
     scale = 10_000.0  # derivatives in units of 0.1 mm, as 16-bit integers for Canny
     high = parameters.depth_edge / 2 * scale  # a central difference sees half a step
-    found = cv2.Canny(
-        *(np.clip(np.rint(d * scale), -32000, 32000).astype(np.int16) for d in (dx, dy)),
-        high / 2,
-        high,
-        L2gradient=True,
-    )
-    steps = found > 0
+    whole_x, whole_y = (np.clip(np.rint(d * scale), -32000, 32000).astype(np.int16) for d in (dx, dy))
+    steps = np.asarray(cv2.Canny(whole_x, whole_y, high / 2, high, L2gradient=True)) > 0
     creases = _creases(slope, pixel_size)
     near_data = cv2.dilate(data.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
     across = np.where(steps, np.abs(dx) >= np.abs(dy), creases)

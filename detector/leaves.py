@@ -43,12 +43,13 @@ def describe_door(
             return Door(doorway, "double", "closed", (closed_leaf(), closed_leaf()))
         return Door(doorway, "single", "closed", (closed_leaf(),))
     left, right = (fit_leaf(points, doorway, side, parameters) for side in ("left", "right"))
-    single = max((fit for fit in (left, right) if fit is not None), key=lambda fit: fit[1], default=None)
+    single = max((fit for fit in (left, right) if fit is not None), key=lambda fit: fit.likelihood, default=None)
     double = _double(doorway, merged, points, height, parameters)
     if double is not None and (doorway.width > MAX_LEAF or single is None):
         return Door(doorway, "double", _state(double), double)
     if single is not None:
-        return Door(doorway, "single", _state((single[0],)), (single[0],))
+        leaf = _closed_if_shut(single.leaf, parameters)
+        return Door(doorway, "single", _state((leaf,)), (leaf,))
     if _slides(doorway, merged, seen, height, parameters):
         return Door(doorway, "sliding", "semi-open", (closed_leaf(),))
     missing = Leaf("none", float("nan"), float("nan"), None, NO_POINTS)
@@ -58,6 +59,11 @@ def describe_door(
 def closed_leaf() -> Leaf:
     """A leaf in the wall's plane."""
     return Leaf("none", 0.0, 0.0, None, NO_POINTS)
+
+
+def _closed_if_shut(leaf: Leaf, parameters: DetectorParameters) -> Leaf:
+    """A leaf below the closed angle is closed, whatever its pane lets through."""
+    return closed_leaf() if leaf.opening_angle < parameters.closed_angle else leaf
 
 
 def join_leaves(doors: list[Door]) -> list[Door]:
@@ -106,7 +112,7 @@ def _double(
         fit = fit_leaf(points, half, side, parameters)
         if fit is None:
             return None
-        leaves.append(fit[0])
+        leaves.append(_closed_if_shut(fit.leaf, parameters))
     return leaves[0], leaves[1]
 
 
@@ -124,7 +130,7 @@ def _slides(doorway: Rectangle, merged: Orthoimage, seen: Image, height: float, 
         return False
     medians = np.nanmedian(merged.depth[cut][:, columns], axis=0)
     slope = np.polyfit(columns * px, medians, 1)[0]
-    return abs(np.arctan(slope)) < 2 * parameters.closed_angle and np.ptp(columns) < 1.2 * len(columns)
+    return bool(abs(np.arctan(slope)) < 2 * parameters.closed_angle and np.ptp(columns) < 1.2 * len(columns))
 
 
 def _state(leaves: tuple[Leaf, ...]) -> Literal["closed", "semi-open", "open"]:

@@ -38,17 +38,13 @@ def _settled(rectangle: Rectangle, passed: Mask, face: Mask, height: float, pixe
         int((height - rectangle.top + CLEAR) / pixel_size) : int((height - rectangle.bottom - CLEAR) / pixel_size)
     ]
     columns = np.s_[int((rectangle.left + CLEAR) / pixel_size) : int((rectangle.right - CLEAR) / pixel_size)]
-    across, down = (
-        [m[rows].mean(axis=0) for m in (passed, face)],
-        [m[:, columns].mean(axis=1) for m in (passed, face)],
-    )
-    reach = round(REACH / pixel_size)
-    left = _edge(*across, rectangle.left / pixel_size, reach)
-    flipped = len(across[0]) - _edge(
-        across[0][::-1], across[1][::-1], len(across[0]) - rectangle.right / pixel_size, reach
-    )
-    top = _edge(*down, (height - rectangle.top) / pixel_size, reach)
-    return Rectangle(left * pixel_size, rectangle.bottom, flipped * pixel_size, height - top * pixel_size)
+    hole, wall = (m[rows].mean(axis=0) for m in (passed, face))
+    reach, count = round(REACH / pixel_size), len(hole)
+    left = _edge(hole, wall, rectangle.left / pixel_size, reach)
+    right = count - _edge(hole[::-1], wall[::-1], count - rectangle.right / pixel_size, reach)
+    hole, wall = (m[:, columns].mean(axis=1) for m in (passed, face))
+    top = _edge(hole, wall, (height - rectangle.top) / pixel_size, reach)
+    return Rectangle(left * pixel_size, rectangle.bottom, right * pixel_size, height - top * pixel_size)
 
 
 def _edge(hole: NDArray, face: NDArray, position: float, reach: int) -> float:

@@ -44,7 +44,8 @@ def find_lines(edges: Mask, axis: int, window_px: int, share: float, limit: int 
     wide = cv2.dilate(edges.astype(np.uint8), np.ones(across[::-1], np.uint8)) > 0
     covered, sharp = lateral_histogram(wide, axis, window_px), lateral_histogram(edges, axis, window_px)
     strength = np.convolve(sharp, [0.5, 1.0, 0.5], mode="same")
-    taken, lines = np.zeros(len(sharp), bool), []
+    taken = np.zeros(len(sharp), bool)
+    lines: list[float] = []
     for peak in np.argsort(-strength, kind="stable"):
         if len(lines) == limit:
             break

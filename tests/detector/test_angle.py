@@ -41,7 +41,7 @@ def surroundings(seed: int = 1) -> np.ndarray:
 def test_the_angle_of_a_leaf_is_within_half_a_degree(angle_deg: float, hinge: str) -> None:
     depth = 0.0 if angle_deg > 0 else -0.11  # a leaf that opens outward hangs on the far side of the wall
     points = np.concatenate([leaf_points(angle_deg, hinge, hinge_depth=depth), surroundings()])
-    leaf, cover = fit_leaf(points, DOORWAY, hinge, PARAMETERS)
+    leaf, cover, _ = fit_leaf(points, DOORWAY, hinge, PARAMETERS)
     assert np.rad2deg(leaf.opening_angle) == pytest.approx(abs(angle_deg), abs=0.5)
     assert leaf.opens == ("inward" if angle_deg > 0 else "outward") and leaf.hinge == hinge
     assert cover > 0.8 and np.rad2deg(leaf.opening_angle_std) < 0.2
@@ -49,8 +49,21 @@ def test_the_angle_of_a_leaf_is_within_half_a_degree(angle_deg: float, hinge: st
 
 def test_a_leaf_that_is_half_hidden_has_the_same_angle() -> None:
     points = np.concatenate([leaf_points(50, "left", seen=0.5), surroundings()])
-    leaf, cover = fit_leaf(points, DOORWAY, "left", PARAMETERS)
+    leaf, cover, _ = fit_leaf(points, DOORWAY, "left", PARAMETERS)
     assert np.rad2deg(leaf.opening_angle) == pytest.approx(50, abs=0.7) and cover < 0.7
+
+
+@pytest.mark.parametrize("hinge", ["left", "right"])
+@pytest.mark.parametrize(("angle_deg", "depth"), [(-17, -0.07), (17, -0.02), (-4, -0.05)])
+def test_a_slightly_open_leaf_hangs_at_the_end_that_lies_in_the_wall(
+    angle_deg: float, depth: float, hinge: str
+) -> None:
+    # from the other jamb the same line starts 0.9 m * tan(17 deg) = 0.28 m off, where no hinge can be
+    points = np.concatenate([leaf_points(angle_deg, hinge, hinge_depth=depth), surroundings()])
+    fits = [fit_leaf(points, DOORWAY, side, PARAMETERS) for side in ("left", "right")]
+    best = max((fit for fit in fits if fit is not None), key=lambda fit: fit.likelihood)
+    assert best.leaf.hinge == hinge and best.leaf.opens == ("inward" if angle_deg > 0 else "outward")
+    assert best.hinge_depth == pytest.approx(depth, abs=0.01)
 
 
 def test_the_papers_slice_at_half_height_can_be_chosen() -> None:
@@ -58,7 +71,7 @@ def test_the_papers_slice_at_half_height_can_be_chosen() -> None:
     points = np.concatenate([leaf_points(35, "right"), surroundings()])
     # everything but half height is moved: only the slice may count
     points[np.abs(points[:, 1] - 1.0) > 0.1, 2] += 3
-    leaf, _ = fit_leaf(points, DOORWAY, "right", parameters)
+    leaf, *_ = fit_leaf(points, DOORWAY, "right", parameters)
     assert np.rad2deg(leaf.opening_angle) == pytest.approx(35, abs=0.7)
 
 
