@@ -149,12 +149,12 @@ def _scatter() -> rrb.View:
     return rrb.Spatial2DView(
         origin=entities.SCATTER,
         name="Opening angle: estimate against joint",
-        visual_bounds=rrb.VisualBounds2D(x_range=(-40, 140), y_range=(-120, 28)),
+        visual_bounds=rrb.VisualBounds2D(x_range=(-40, 190), y_range=(-120, 28)),
     )
 
 
 def _percent() -> rrb.View:
-    return rrb.TimeSeriesView(origin=entities.COVERAGE, name="Coverage [%]", axis_y=rrb.ScalarAxis(range=(0, 105)))
+    return rrb.TimeSeriesView(origin=entities.COVERAGE, name="Seen so far [%]", axis_y=rrb.ScalarAxis(range=(0, 105)))
 
 
 def _log() -> rrb.View:

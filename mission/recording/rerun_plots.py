@@ -144,10 +144,12 @@ class Plots:
                 )
 
     def _plot_coverage(self, room: int, what: str, coverage: float) -> None:
+        """Walls and the whole structure, which a floor under furniture belongs to, are two lines."""
         entity = child(entities.COVERAGE, room, what)
         if entity not in self._styled:
             self._styled.add(entity)
-            self._rec.log(entity, rr.SeriesLines(names=f"room {room}: {what}", widths=2.0), static=True)
+            colour, name = palette(len(self._styled)), f"room {room}: {what} seen [%]"
+            self._rec.log(entity, rr.SeriesLines(names=name, colors=colour, widths=2.0), static=True)
         self._rec.log(entity, rr.Scalars(100.0 * coverage))
 
 

@@ -15,6 +15,8 @@ from mission.recording.drawing import angle_label, degrees, palette
 from mission.report import Report
 
 AXIS = (150, 150, 150)
+LABEL = (86.0, 15.0)
+"""Width and height of a label in the figure of angles, in its degrees."""
 
 
 class Results:
@@ -62,7 +64,7 @@ def summary(report: Report) -> str:
         lines += [f"**{report.finished.outcome}**: {report.finished.reason}; {driven}", ""]
     for room in report.rooms.values():
         stop = f", stopped: {room.stop_reason}" if room.stop_reason else ""
-        lines += [f"## Room {room.id}", f"{room.scans} scans, {room.coverage:.1%} of the structure seen{stop}", ""]
+        lines += [f"## Room {room.id}", f"{room.scans} scans, {room.coverage:.1%} of the walls seen{stop}", ""]
         lines += _door_table(room.doors)
         lines += [f"- missed: `{name}`" for name in room.missed]
     return "\n".join([*lines, "", *_metrics(report)])
@@ -109,12 +111,36 @@ def draw_scatter(rec: rr.RecordingStream, doors: Sequence[DoorEvaluation]) -> No
             points,
             colors=colours,
             radii=rr.Radius.ui_points(6.0),
+        ),
+    )
+    rec.log(
+        f"{entities.SCATTER}/labels",
+        rr.Points2D(
+            label_places(points),
+            colors=colours,
+            radii=0.0,
             labels=[f"{door.door_id}: {angle_label(door)}" for _, door in known],
             show_labels=True,
         ),
     )
     bars = [[(x, y - std), (x, y + std)] for (x, y), std in zip(points, stds, strict=True)]
     rec.log(f"{entities.SCATTER}/deviations", rr.LineStrips2D(bars, colors=colours, radii=rr.Radius.ui_points(1.5)))
+
+
+def label_places(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Where to write beside points of the figure, from the lowest up, so that no two labels lie on each other.
+
+    All closed doors are in one point.
+    """
+    width, height = LABEL
+    places: dict[int, tuple[float, float]] = {}
+    for number in sorted(range(len(points)), key=lambda n: -points[n][1]):  # the estimate counts upwards, y down
+        x, y = points[number][0] + 0.53 * width, points[number][1] - height
+        for other_x, other_y in sorted(places.values(), key=lambda place: -place[1]):  # the lowest first
+            if abs(x - other_x) < width and abs(y - other_y) < height:
+                y = other_y - height
+        places[number] = (x, y)
+    return [places[number] for number in range(len(points))]
 
 
 def draw_bars(rec: rr.RecordingStream, entity: str, rows: Sequence[tuple[str, float, str]]) -> None:

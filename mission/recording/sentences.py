@@ -81,12 +81,12 @@ def _registered(event: Registered) -> str:
 def _planned(event: Planned) -> str:
     plan = event.plan
     if plan.chosen is None:
-        return f"no further scan: {plan.stop_reason}; coverage {plan.coverage:.1%}"
+        return f"no further scan: {plan.stop_reason}; {plan.coverage:.1%} of the structure seen"
     chosen = plan.candidates[plan.chosen]
     x, y = chosen.position
     return (
         f"next scan at ({x:.2f}, {y:.2f}): {chosen.gain:.1f} m2 to gain, {chosen.travel:.1f} m away, "
-        f"best of {len(plan.candidates)}; coverage {plan.coverage:.1%}"
+        f"best of {len(plan.candidates)}; {plan.coverage:.1%} of the structure seen"
     )
 
 

@@ -16,9 +16,20 @@ from numpy.typing import NDArray
 from rerun.chunk import RrdReader
 
 from detector.result import Candidate, Rectangle
-from mission.events import Coloured, DoorsDetected, DoorsEvaluated, Drove, Event, MissionFinished, MissionStarted
+from mission.events import (
+    Coloured,
+    DoorsDetected,
+    DoorsEvaluated,
+    Drove,
+    Event,
+    Labelled,
+    MissionFinished,
+    MissionStarted,
+    Planned,
+)
 from mission.recording.blueprint import outlook
 from mission.recording.rerun_doors import Shot
+from mission.recording.rerun_results import LABEL, label_places
 from mission.recording.rerun_sink import RerunSink
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
 from mission.recording.sentences import sentence
@@ -183,6 +194,42 @@ def test_estimates_and_joints_are_those_of_the_event(recording: Path) -> None:
     assert {value for row in joints for value in row} == {np.degrees(JOINT)}
     (error,) = column(recording, "/table/doors/1.2-a", "error_deg")
     assert error == pytest.approx([-1.0])  # 30 deg measured, the joint at 31
+
+
+def test_the_errors_are_labelled_with_two_decimals(recording: Path) -> None:
+    assert column(recording, "/figures/angle_error/labels", "Points2D:labels")[-1][0] == "1.2-a: -1.00 deg"
+
+
+def test_walls_and_structure_are_two_lines_of_what_was_seen(recording: Path) -> None:
+    labelled = [event.voxels.coverage for event in story() if isinstance(event, Labelled)]
+    planned = [event.plan.coverage for event in story() if isinstance(event, Planned)]
+    colours = []
+    for what, shares in (("walls", labelled), ("structure", planned)):
+        entity = f"/plots/coverage/1/{what}"
+        values = [value for row in column(recording, entity, "Scalars:scalars") for value in row]
+        assert values == pytest.approx([100 * share for share in shares])
+        assert column(recording, entity, "SeriesLines:names") == [[f"room 1: {what} seen [%]"]]
+        colours += column(recording, entity, "SeriesLines:colors")
+    assert colours[0] != colours[1]
+
+
+def test_labels_of_doors_that_are_all_closed_do_not_hide_each_other() -> None:
+    points = [
+        (0.0, 0.0),
+        (35.0, -34.0),
+        (0.0, 0.1),
+        (0.0, 0.0),
+        (90.0, -91.0),
+        (0.0, -12.0),
+        (95.0, -20.0),
+        (60.0, -21.0),
+    ]
+    places = np.array(label_places(points))
+    width, height = LABEL
+    for number, place in enumerate(places):
+        gap = np.abs(np.delete(places, number, axis=0) - place)
+        assert ((gap[:, 0] >= width) | (gap[:, 1] > height - 1e-9)).all()
+    assert places[4] == pytest.approx([90 + 0.53 * width, -91 - height])  # none near: beside its point
 
 
 def test_a_door_is_drawn_where_it_was_found_and_labelled_with_its_joint(recording: Path) -> None:
