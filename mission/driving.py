@@ -49,8 +49,6 @@ class DrivenRobot(Protocol):
 class Drive:
     """A leg as it was driven."""
 
-    planned_path: NDArray[np.float64]
-    """(P, 2) way points in the world [m]."""
     times: NDArray[np.int64]
     """(T,) simulated time of each pose [ns]."""
     world_from_base: NDArray[np.float64]
@@ -99,7 +97,7 @@ def drive(
     log = _Log(robot, measure, localise, watch, correction=correction, parameters=parameters)
     outcome, reason = _advance(robot, path, log, footprint=footprint, parameters=parameters)
     _halt(robot, log, parameters)
-    return log.closed(path, outcome, reason)
+    return log.closed(outcome, reason)
 
 
 def _advance(
@@ -189,11 +187,10 @@ class _Log:
         self._watch()
         return scans, pose
 
-    def closed(self, path: NDArray[np.float64], outcome: Outcome, reason: str) -> Drive:
+    def closed(self, outcome: Outcome, reason: str) -> Drive:
         """The record, its last laser scans those of the last moment."""
         kept = self._kept + self._now
         return Drive(
-            planned_path=path,
             times=np.array(self._times, dtype=np.int64),
             world_from_base=np.array(self._poses),
             laser_scans=tuple(scan for scan, _ in kept),

@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # events are plain data: making one must not import mujoco, o
     from detector.result import WallResult
     from detector.room import View
     from mission.evaluation import DoorEvaluation
-    from mission.navigation import OccupancyGrid
+    from mission.grid import OccupancyGrid
     from mission.planning import Plan
     from mission.structure import Structure
     from mission.voxels import VoxelModel

@@ -97,18 +97,10 @@ class OccupancyGrid:
     @cached_property
     def clearance(self) -> NDArray[np.float32]:
         """(rows, columns) distance from a cell's centre to the nearest cell that is not free [m], 0 where not free."""
-        return self._distance(self.cells != Cell.FREE)
-
-    @cached_property
-    def obstacle_clearance(self) -> NDArray[np.float32]:
-        """(rows, columns) distance from a cell's centre to the nearest occupied cell or the grid's edge [m]."""
-        return self._distance(self.cells == Cell.OCCUPIED)
-
-    def _distance(self, blocked: NDArray[np.bool_]) -> NDArray[np.float32]:
-        """Distance from centre to centre, less half a cell for the obstacle's side; beyond the edge all is blocked."""
-        padded = np.pad((~blocked).astype(np.uint8), 1)
+        padded = np.pad((self.cells == Cell.FREE).astype(np.uint8), 1)  # beyond the edge nothing is free
         distance = cv2.distanceTransform(padded, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)[1:-1, 1:-1]
-        return np.maximum(distance - 0.5, 0.0).astype(np.float32) * np.float32(self.resolution)
+        to_side = np.maximum(distance - 0.5, 0.0)  # centre to centre, less half a cell
+        return to_side.astype(np.float32) * np.float32(self.resolution)
 
     def centres(self) -> NDArray[np.float64]:
         """(rows, columns, 2) centres of all cells in the world [m]."""

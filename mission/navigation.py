@@ -19,8 +19,6 @@ from mission.following import DrivingParameters
 from mission.grid import Cell, Footprint, GridParameters, OccupancyGrid
 from mission.localisation import LocalisationParameters
 
-__all__ = ["Footprint", "NavigationParameters", "OccupancyGrid", "RoadMap", "plan_path", "road_map"]
-
 
 class NavigationParameters(BaseModel):
     """How the robot finds and follows its way."""
