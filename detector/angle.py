@@ -46,7 +46,7 @@ class LeafFit(NamedTuple):
 
     @property
     def likelihood(self) -> float:
-        """For comparing hinge sides: a slightly open leaf is one line from jamb to jamb, hung at the end in the wall."""
+        """Tells hinge sides apart: a slightly open leaf is one line from jamb to jamb, hung at the end in the wall."""
         return self.cover - abs(self.hinge_depth)
 
 

@@ -27,6 +27,8 @@ SLOPE_NOISE = 8.0
 """How much less a step counts on a surface that slopes by one: the gaps between samples become steps there."""
 FLAT = 0.1
 """Slope along u up to which a surface counts as parallel to the wall: 6 deg."""
+SLOPE_OUTLIER = 4.5
+"""Slopes up to this many times the median are noise where that is more: three sigma."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +131,7 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
     high = parameters.depth_edge / 2 * scale  # a central difference sees half a step
     whole_x, whole_y = (np.clip(np.rint(d * scale), -32000, 32000).astype(np.int16) for d in (dx, dy))
     steps = np.asarray(cv2.Canny(whole_x, whole_y, high / 2, high, L2gradient=True)) > 0
-    creases = _creases(slope, pixel_size)
+    creases = _creases(np.abs(slope) > _flatness(slope, data, pixel_size))
     near_data = cv2.dilate(data.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
     across = np.where(steps, np.abs(dx) >= np.abs(dy), creases)
     return Relief((steps | creases) & near_data, across)
@@ -142,8 +144,19 @@ def wall_face(view: Orthoimage, parameters: DetectorParameters) -> Mask:
     """
     data = np.isfinite(view.depth)
     dx, _ = _derivatives(nearest(view.depth, data), _odd(ALONG, view.pixel_size))
-    flat = np.abs(_local_slope(dx, view.pixel_size)) <= FLAT * view.pixel_size
-    return data & flat & (np.abs(np.where(data, view.depth, 0)) < parameters.slab_face)
+    slope = _local_slope(dx, view.pixel_size)
+    near = data & (np.abs(np.where(data, view.depth, 0)) < parameters.slab_face)
+    return near & (np.abs(slope) <= _flatness(slope, near, view.pixel_size))
+
+
+def _flatness(slope: NDArray[np.float32], wall: Mask, pixel_size: float) -> float:
+    """Change per pixel up to which a surface is flat; a dark wall gives noisy ranges, and slopes that are no slopes.
+
+    Args:
+        wall: (H, W) pixels that mostly lie in the wall's plane.
+    """
+    noise = float(np.median(np.abs(slope[wall]))) if wall.any() else 0.0
+    return max(FLAT * pixel_size, SLOPE_OUTLIER * noise)
 
 
 def _local_slope(dx: NDArray[np.float32], pixel_size: float) -> NDArray[np.float32]:
@@ -155,12 +168,11 @@ def _local_slope(dx: NDArray[np.float32], pixel_size: float) -> NDArray[np.float
     return np.repeat(coarse, every, axis=0)[: len(dx)]
 
 
-def _creases(slope: NDArray[np.float32], pixel_size: float) -> Mask:
+def _creases(sloping: Mask) -> Mask:
     """(H, W) both pixels of each upright border between flat and sloping: the hinge of a half-open leaf.
 
-    The running median keeps such a border in place, and does not see steps.
+    The running median of the slope keeps such a border in place, and does not see steps.
     """
-    sloping = np.abs(slope) > FLAT * pixel_size
     changes = sloping[:, 1:] != sloping[:, :-1]
     creases = np.zeros_like(sloping)
     creases[:, 1:] |= changes
