@@ -88,8 +88,8 @@ class Mopad:
         return [
             self._hokuyo.measure(
                 self._scene.data,
-                self.robot.true_world_from_base @ base_from_laser,
-                base_from_laser=base_from_laser,
+                self.robot.true_world_from_base,
+                base_from_laser,
                 rng=self._hokuyo_rng,
                 time=self.time,
             )

@@ -75,27 +75,27 @@ class Hokuyo:
     def measure(
         self,
         data: mujoco.MjData,
-        world_from_laser: NDArray[np.float64],
+        world_from_base: NDArray[np.float64],
+        base_from_laser: NDArray[np.float64],
+        *,
         rng: np.random.Generator,
         time: int,
-        base_from_laser: NDArray[np.float64] | None = None,
     ) -> LaserScan:
         """Sweeps once; glass is let through.
 
         Args:
             data: state of the world, after `mj_kinematics` or more.
-            world_from_laser: (4, 4) pose of the laser.
+            world_from_base: (4, 4) pose of the robot.
+            base_from_laser: (4, 4) where the laser sits on it.
             rng: source of the noise.
             time: mission time [ns].
-            base_from_laser: (4, 4) where the laser sits on the robot, handed on in the result; identity if left out.
         """
-        ranges = self._cast(data, world_from_laser)
+        ranges = self._cast(data, world_from_base @ base_from_laser)
         if self.parameters.noise:
             sigma = np.maximum(self.parameters.noise_near, self.parameters.noise_far * ranges)
             ranges = np.rint((ranges + sigma * rng.standard_normal(len(ranges))) / RESOLUTION) * RESOLUTION
         ranges[(ranges < self.parameters.range_min) | (ranges > self.parameters.range_max)] = np.nan
-        mount = np.eye(4) if base_from_laser is None else base_from_laser
-        return LaserScan(mount, self.angles, ranges.astype(np.float32), time)
+        return LaserScan(base_from_laser, self.angles, ranges.astype(np.float32), time)
 
     def _cast(self, data: mujoco.MjData, world_from_laser: NDArray[np.float64]) -> NDArray[np.float64]:
         """(682,) exact ranges [m]; NaN where there is nothing."""

@@ -41,8 +41,8 @@ def hokuyos(scene: Scene, robot: Robot) -> Callable[[], Sequence[LaserScan]]:
     return lambda: [
         hokuyo.measure(
             scene.data,
-            robot.true_world_from_base @ base_from_laser,
-            base_from_laser=base_from_laser,
+            robot.true_world_from_base,
+            base_from_laser,
             rng=rng,
             time=round(robot.time * 1e9),
         )

@@ -7,12 +7,13 @@ import pytest
 
 from sim.hokuyo import Hokuyo, HokuyoParameters
 
+ORIGIN = np.eye(4)
 EXACT = HokuyoParameters(noise=False)
 
 
-def sweep(scene, *, parameters=EXACT, place=None, hidden=(), seed=0):
+def sweep(scene, *, parameters=EXACT, base=ORIGIN, mount=ORIGIN, hidden=(), seed=0):
     laser = Hokuyo(scene[0], hidden, parameters)
-    return laser.measure(scene[1], np.eye(4) if place is None else place, np.random.default_rng(seed), 5)
+    return laser.measure(scene[1], base, mount, rng=np.random.default_rng(seed), time=5)
 
 
 def test_a_sweep_has_682_beams_over_240_degrees_anticlockwise(world):
@@ -31,12 +32,14 @@ def test_ranges_are_those_of_a_wall(world):
     assert np.allclose(scan.ranges[ahead], 2 / np.cos(scan.angles[ahead]), atol=1e-6)
 
 
-def test_it_measures_from_where_it_sits(world):
-    place = np.eye(4)
-    place[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]  # looks along y
-    place[:3, 3] = 1, 1, 0.3
-    scan = sweep(world('<geom type="box" size="9 .1 .1" pos="0 3.1 .3"/>'), place=place)
+def test_it_measures_from_where_it_sits_on_the_robot(world):
+    base, mount = np.eye(4), np.eye(4)
+    base[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]  # the robot looks along y
+    base[:2, 3] = 1, 0.6
+    mount[:3, 3] = 0.4, 0, 0.3  # so the laser is at y = 1
+    scan = sweep(world('<geom type="box" size="9 .1 .1" pos="0 3.1 .3"/>'), base=base, mount=mount)
     assert scan.ranges[340] == pytest.approx(2, abs=1e-6)
+    assert scan.base_from_laser is mount
 
 
 def test_nothing_beyond_5_6_metres_returns(world):
