@@ -129,7 +129,8 @@ def _draw_search(rec: rr.RecordingStream, entity: str, result: WallResult) -> No
     columns = ("dominant_colour_share", "dominant_depth_share", "wall_share")
     shares: dict[str, Any] = {name: np.array([getattr(c, name) for c in shown], float) for name in columns}
     shares["least_side_support"] = np.array([min(c.side_support) for c in shown], float)
-    rec.log(f"{entity}/candidates/boxes", *hover(**shares))
+    for values in hover(**shares):
+        rec.log(f"{entity}/candidates/boxes", values)
     _draw_boxes(
         rec,
         f"{entity}/candidates",

@@ -8,12 +8,17 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from mcap.reader import make_reader
 
+import mission.mission
 from mission.__main__ import main
+from mission.driving import Drive, drive
+from mission.mission import NO_ARRIVAL
 
 pytestmark = pytest.mark.slow
 
@@ -62,7 +67,8 @@ def test_the_summary_tells_time_memory_versions_and_configuration(furnished: Pat
 def test_one_seed_gives_the_same_bytes_on_one_core_and_on_two(furnished: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mission", "run", "room.xml", *DRAFT, "--max-scans", "3", "--quiet"]
     one_core = ["taskset", "-c", "0"] if sys.platform == "linux" else []
-    subprocess.run([*one_core, *command, "--out", str(tmp_path)], check=True)
+    other_hashes = os.environ | {"PYTHONHASHSEED": "5"}
+    subprocess.run([*one_core, *command, "--out", str(tmp_path)], check=True, env=other_hashes)
     for name in ("doors.json", "mission.mcap"):
         assert (tmp_path / name).read_bytes() == (furnished / name).read_bytes(), name
 
@@ -75,6 +81,16 @@ def test_a_room_with_three_walls_no_ceiling_and_no_door_is_a_success(tmp_path: P
     assert printed["doors"]["rooms"][0]["doors"] == []
     assert printed["doors"]["rooms"][0]["walls"] == 3
     assert printed["summary"]["metrics"]["doors"] == 0
+
+
+def test_a_robot_that_never_arrives_ends_the_room_and_says_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def blocked(*arguments: Any, **keywords: Any) -> Drive:
+        return replace(drive(*arguments, **keywords), outcome="blocked", reason="a box is in the way")
+
+    monkeypatch.setattr(mission.mission, "drive", blocked)
+    assert main(["run", "room.xml", *DRAFT, "--quiet", "--out", str(tmp_path)]) == 0
+    (room,) = json.loads((tmp_path / "summary.json").read_text())["rooms"]
+    assert (room["scans"], room["stop_reason"]) == (1, NO_ARRIVAL)
 
 
 def test_a_mission_below_the_bar_exits_with_1(tmp_path: Path, capsys) -> None:
@@ -95,15 +111,16 @@ def test_an_interrupted_mission_leaves_readable_files(tmp_path: Path, after: str
         "sys.exit(main(sys.argv[1:]))"
     )
     command = [sys.executable, "-c", code, "run", "room.xml", *DRAFT, "--quiet", "--out", str(tmp_path)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONPATH": "."})
-    assert process.stdout is not None
-    for line in process.stdout:
-        if line.strip() == after:
-            time.sleep(0.05)  # into the next stage
-            process.send_signal(signal.SIGINT)
-            break
-    process.stdout.read()
-    assert process.wait(timeout=60) == 130
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
+        assert process.stdout is not None
+        for line in process.stdout:
+            if line.strip() == after:
+                time.sleep(0.05)  # into the next stage
+                process.send_signal(signal.SIGINT)
+                break
+        process.stdout.read()
+    assert process.returncode == 130
     assert json.loads((tmp_path / "doors.json").read_text())["rooms"][0]["scans"] in {0, 1}
     assert json.loads((tmp_path / "summary.json").read_text())["outcome"] == "interrupted"
     with (tmp_path / "mission.mcap").open("rb") as file:
