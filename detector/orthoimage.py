@@ -75,35 +75,39 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
     if not scanner[2] > parameters.slab_front:
         return None
     points = view.points_in_world
-    depth = points @ wall.normal.astype(np.float32) - np.float32(wall.origin @ wall.normal)
-    near = np.flatnonzero((depth > -parameters.slab_behind) & (depth < parameters.slab_front))
+    depths = wall.depths(points)
+    near = np.flatnonzero((depths > -parameters.slab_behind) & (depths < parameters.slab_front))
     slab = wall.wall_from_world(points.take(near, axis=0))
-    inside = _inside(slab, wall) & (slab[:, 1] >= floor + parameters.floor_margin)
-    if not inside.any():
+    inside = np.flatnonzero(_inside(slab[:, 0], slab[:, 1], wall) & (slab[:, 1] >= floor + parameters.floor_margin))
+    if len(inside) == 0:
         return None
-    near, slab = near[inside], slab[inside]
-    behind = np.flatnonzero(depth < -parameters.face_tolerance)
-    behind = wall.wall_from_world(points.take(behind[:: 1 + len(behind) // MAX_PASSED], axis=0))
+    near, slab = near.take(inside), slab.take(inside, axis=0)
+    deep = np.flatnonzero(depths < -parameters.face_tolerance)
+    behind = wall.wall_from_world(points.take(deep[:: 1 + len(deep) // MAX_PASSED], axis=0))
     thinned = wall.wall_from_world(points[:: 1 + 2 * (len(points) // (2 * THINNED_TO))])
-    front = thinned[(thinned[:, 2] > parameters.slab_front) & (thinned[:, 2] < 0.98 * scanner[2])]
-    reach = (np.abs(thinned[:, 2]) < LEAF_REACH) & (thinned[:, 0] > -LEAF_REACH)
-    reach &= (thinned[:, 0] < wall.width + LEAF_REACH) & (thinned[:, 1] > floor + 0.1)
-    beyond = behind[(behind[:, 2] > -LEAF_REACH) & (behind[:, 1] > floor + 0.1)]
+    front = (thinned[:, 2] > parameters.slab_front) & (thinned[:, 2] < 0.98 * scanner[2])
+    reach = (thinned[:, 2] < LEAF_REACH) & (thinned[:, 2] >= -parameters.face_tolerance)
+    reach &= (thinned[:, 0] > -LEAF_REACH) & (thinned[:, 0] < wall.width + LEAF_REACH) & (thinned[:, 1] > floor + 0.1)
+    beyond = (behind[:, 2] > -LEAF_REACH) & (behind[:, 1] > floor + 0.1)
     return WallPoints(
         slab=slab,
         colours=view.colours.take(near, axis=0),
-        coloured=view.coloured[near],
+        coloured=view.coloured.take(near),
         passed=_crossings(behind, scanner, wall),
-        blocked=_crossings(front, scanner, wall),
-        around=np.concatenate([thinned[reach & (thinned[:, 2] >= -parameters.face_tolerance)], beyond]),
+        blocked=_crossings(_rows(thinned, front), scanner, wall),
+        around=np.concatenate([_rows(thinned, reach), _rows(behind, beyond)]),
         scanner=scanner,
         camera=camera,
     )
 
 
-def _inside(points: NDArray[np.float32], wall: Wall) -> NDArray[np.bool_]:
+def _rows(array: NDArray, chosen: NDArray[np.bool_]) -> NDArray:
+    """(M, ...) the chosen rows of an array (N, ...): `array[chosen]`, which takes several times as long."""
+    return array.take(np.flatnonzero(chosen), axis=0)
+
+
+def _inside(u: NDArray[np.float32], v: NDArray[np.float32], wall: Wall) -> NDArray[np.bool_]:
     """(N,) True over the wall's rectangle."""
-    u, v = points[:, 0].copy(), points[:, 1].copy()
     return (u >= 0) & (u < wall.width) & (v >= 0) & (v < wall.height)
 
 
@@ -111,8 +115,9 @@ def _crossings(points: NDArray[np.float32], scanner: NDArray[np.float64], wall: 
     """(K, 2) where the beams to the points meet the wall's plane, of those that meet its rectangle."""
     origin = scanner.astype(np.float32)
     along = origin[2] / (origin[2] - points[:, 2])
-    crossings = origin[:2] + along[:, None] * (points[:, :2] - origin[:2])
-    return crossings[_inside(crossings, wall)]
+    u, v = (origin[i] + along * (points[:, i] - origin[i]) for i in range(2))
+    inside = np.flatnonzero(_inside(u, v, wall))
+    return np.stack([u.take(inside), v.take(inside)], axis=1)
 
 
 def pixels(points: NDArray[np.float32], wall: Wall, shape: tuple[int, int], pixel_size: float) -> NDArray[np.int64]:
@@ -133,19 +138,25 @@ def orthoimage(points: WallPoints, wall: Wall, gap_px: int, parameters: Detector
     shape = image_shape(wall, parameters)
     index = pixels(points.slab, wall, shape, parameters.pixel_size)
     size = shape[0] * shape[1]
-    depth = np.full(size, -np.inf, np.float32)
-    np.maximum.at(depth, index, points.slab[:, 2])
-    index, colours = index[points.coloured], points.colours[points.coloured]
+    depth = largest(index, points.slab[:, 2], size).reshape(shape)
+    known = np.flatnonzero(points.coloured)
+    index, colours = index.take(known), points.colours.take(known, axis=0)
     counts = np.bincount(index, minlength=size)
     sums = np.stack([np.bincount(index, colours[:, i], size) for i in range(3)], axis=1)
     colour = np.rint(sums / np.maximum(counts, 1)[:, None]).astype(np.uint8).reshape(*shape, 3)
-    depth = np.where(np.isfinite(depth), depth, np.nan).reshape(shape)
     coloured = (counts > 0).reshape(shape)
     filled = close_gaps(np.isfinite(depth), gap_px)
     filled_colour = close_gaps(coloured, gap_px) & filled
     depth = np.where(filled, nearest(depth, np.isfinite(depth)), np.float32(np.nan))
     colour = np.where(filled_colour[..., None], nearest(colour, coloured), np.uint8(0))
     return Orthoimage(colour, filled_colour, depth, parameters.pixel_size)
+
+
+def largest(index: NDArray[np.int64], values: NDArray[np.float32], size: int) -> NDArray[np.float32]:
+    """(size,) largest value of each index; NaN where there is none."""
+    result = np.full(size, -np.inf)
+    np.maximum.at(result, index, values.astype(np.float64))  # ten times as fast as in 32 bits (numpy 2.4)
+    return np.where(np.isfinite(result), result, np.nan).astype(np.float32)
 
 
 def sampling_gap(points: WallPoints, parameters: DetectorParameters) -> int:
@@ -155,9 +166,12 @@ def sampling_gap(points: WallPoints, parameters: DetectorParameters) -> int:
     with the square of the range over the distance from the wall.
     """
     block = 8 * parameters.pixel_size
-    cells = (points.slab[:, :2] / block).astype(np.int64)
-    keys, counts = np.unique(cells[:, 0] * 100_000 + cells[:, 1], return_counts=True)
-    centres = (np.stack([keys // 100_000, keys % 100_000], axis=1) + 0.5) * block
+    columns, rows = ((points.slab[:, i] / block).astype(np.int64) for i in range(2))
+    across = int(rows.max()) + 1
+    counts = np.bincount(columns * across + rows)
+    keys = np.flatnonzero(counts)
+    counts = counts[keys]
+    centres = (np.stack([keys // across, keys % across], axis=1) + 0.5) * block
     distance = points.scanner[2]
     ranges = np.sqrt(((centres - points.scanner[:2]) ** 2).sum(axis=1) + distance**2)
     step = np.sqrt(np.median(block**2 * distance / ranges**3 / counts))
@@ -180,10 +194,14 @@ def nearest(image: NDArray, known: Mask) -> NDArray:
     _, labels = cv2.distanceTransformWithLabels(
         (~known).astype(np.uint8), cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL
     )
-    source = np.zeros(labels.max() + 1, np.int64)
-    source[labels[known]] = np.flatnonzero(known)
-    flat = image.reshape(known.size, -1)
-    return flat[source[labels.ravel()]].reshape(image.shape)
+    here, gaps = np.flatnonzero(known), np.flatnonzero(~known)
+    label = np.asarray(labels, np.int64).ravel()
+    source = np.zeros(len(here) + 1, np.int64)
+    source[label.take(here)] = here
+    result = image.copy()
+    flat = result.reshape(known.size, -1)
+    flat[gaps] = flat.take(source.take(label.take(gaps)), axis=0)
+    return result
 
 
 def mark(crossings: NDArray[np.float32], wall: Wall, gap_px: int, parameters: DetectorParameters) -> Mask:

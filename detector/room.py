@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -79,10 +80,19 @@ class Wall:
 
     def wall_from_world(self, points: NDArray[np.floating]) -> NDArray[np.floating]:
         """(N, 3) coordinates along u, along v and depth into the room [m], of points in the world frame."""
-        moved = np.empty(np.shape(points), points.dtype)
-        for i, axis in enumerate((self.u, self.v, self.normal)):  # three products run faster than one on (N, 3) rows
-            np.subtract(points @ axis.astype(points.dtype), points.dtype.type(self.origin @ axis), out=moved[:, i])
-        return moved
+        return self._along(np.stack([self.u, self.v, self.normal]), points)
+
+    def depths(self, points: NDArray[np.floating]) -> NDArray[np.floating]:
+        """(N,) depth into the room [m], of points in the world frame."""
+        return self._along(self.normal[None], points)[:, 0]
+
+    def _along(self, axes: NDArray[np.float64], points: NDArray[np.floating]) -> NDArray[np.floating]:
+        """(N, K) coordinates from the wall's origin along axes (K, 3), in the points' own precision."""
+        if len(points) == 0:
+            return np.zeros((0, len(axes)), points.dtype)
+        matrix = np.column_stack([axes, -(axes @ self.origin)]).astype(points.dtype)
+        # one pass, several times as fast as products of (N, 3) rows
+        return np.asarray(cv2.transform(points[None], matrix), points.dtype).reshape(-1, len(axes))
 
     def world_from_wall(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
         """(N, 3) points in the world frame [m], from coordinates along u, along v and depth."""

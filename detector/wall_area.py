@@ -130,17 +130,18 @@ def segment(
     """(H, W) cluster of each pixel by thresholds on all four components; exclusive: the nearer cluster if two match."""
     smooth = cv2.blur(values, (3, 3))
     slack = np.array([COLOUR_SLACK] * 3 + [DEPTH_SLACK / parameters.depth_scale], np.float32)
-    best, result = np.full(known.shape, np.inf, np.float32), np.zeros(known.shape, np.int32)
+    best, result = np.full(known.size, np.inf, np.float32), np.zeros(known.size, np.int32)
     for number in range(1, kept.max(initial=0) + 1):
         members = means[kept == number]
         if len(members) == 0:
             continue
         low, centre, high = np.quantile(members, [0.01, 0.5, 0.99], axis=0).astype(np.float32)
-        matches = known & (smooth >= low - slack).all(axis=2) & (smooth <= high + slack).all(axis=2)
-        distance = np.where(matches, ((smooth - centre) ** 2).sum(axis=2), np.inf)
-        nearer = distance < best
-        best[nearer], result[nearer] = distance[nearer], number
-    return result
+        within = cv2.inRange(smooth, tuple((low - slack).tolist()), tuple((high + slack).tolist()))
+        matches = np.flatnonzero(known & (within > 0))
+        distance = ((smooth.reshape(-1, 4).take(matches, axis=0) - centre) ** 2).sum(axis=1)
+        nearer = distance < best.take(matches)
+        best[matches[nearer]], result[matches[nearer]] = distance[nearer], number
+    return result.reshape(known.shape)
 
 
 def _wall_cluster(clusters: NDArray[np.int32]) -> int:
@@ -156,7 +157,10 @@ def _wall_cluster(clusters: NDArray[np.int32]) -> int:
 
 def _distances(a: NDArray, b: NDArray) -> NDArray[np.float32]:
     """(N, M) Euclidean distances, summed component by component so that the order of summation is fixed."""
-    squares = np.zeros((len(a), len(b)), np.float32)
+    if len(b) < len(a):
+        return _distances(b, a).T  # the long axis last: short rows are slow
+    squares, difference = np.zeros((2, len(a), len(b)), np.float32)
     for i in range(a.shape[1]):
-        squares += (a[:, i, None] - b[None, :, i]) ** 2
-    return np.sqrt(squares)
+        np.subtract(a[:, i, None], b[None, :, i], out=difference)
+        squares += np.square(difference, out=difference)
+    return np.sqrt(squares, out=squares)
