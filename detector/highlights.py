@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +15,26 @@ DIRECTIONS = np.array([(-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1
 """(8, 2) row and column steps N, NE, E, SE, S, SW, W, NW; opposite ones are four apart."""
 SMOOTHING_PX = 3.0
 """Standard deviation of the filter before the intensity is quantised: noise would break every segment up."""
-MIN_FEET = 5
-"""Half profiles, of eight, that must run out; more than three cut off by an edge or a hole make no bell."""
-DISCONTINUITY = 0.03
-"""Drop of the intensity from one pixel to the next that ends a highlight."""
-FLAT_RUN = 6
-"""Pixels without descent after which the slope counts as zero."""
-FLAT = 0.006
-"""Descent over that run that counts as none, of 1."""
+LINE_PX = 11
+"""Dark lines up to this wide, the gaps round a door's leaf, are closed before: they cut highlights into pieces."""
+MIN_FLANKS = 3
+"""Half profiles, of eight, that must be a Gaussian's flank; an edge, a hole or an occlusion may cut the others off."""
+DISCONTINUITY = 0.02
+"""Step of the intensity from one pixel to the next that ends a highlight: an edge of about 0.15 after smoothing."""
+PLATEAU = 0.03
+"""Below the brightest by less than this, a profile is on the overexposed top, which is not fitted."""
+HOLLOW = 0.12
+"""An overexposed top is this much darker than its rim at most, after the fall-off of the flash was divided out."""
+WIDTHS = np.geomspace(4, 400, 40)
+"""Standard deviations that are tried for a Gaussian [px]."""
+FOOT = 2.7
+"""Standard deviations after which the slope of a Gaussian is as good as zero: 7 % of its steepest."""
+MIN_REACH = 1.5
+"""Standard deviations of its Gaussian that a flank must be seen over: less is a slope that needs no highlight."""
+INPAINTED_PX = 4_000
+"""Larger masks are inpainted at a coarser scale, where they have about this many pixels: the filling is smooth."""
+MARGIN_PX = 30
+"""Border round a mask that it is inpainted from; three pixels at the coarsest scale of usual highlights."""
 MAX_CANDIDATES = 30
 
 
@@ -37,30 +47,68 @@ def find_highlights(
         camera: (3,) centre of the camera in wall coordinates [m].
         height: Height of the wall [m].
     """
-    angles, _ = incidence(image, camera, height)
-    region = angles < parameters.highlight_roi_angle
-    filled = nearest(image.colour, image.coloured).astype(np.float32).mean(axis=2) / 255
-    intensity = cv2.GaussianBlur(filled, (0, 0), SMOOTHING_PX)
-    levels = np.minimum(intensity * parameters.grey_levels, parameters.grey_levels - 1).astype(np.uint8)
-    empty = Highlights(region, levels, np.zeros(region.shape, np.int32), np.zeros(region.shape, bool), (), image.colour)
-    if not parameters.correct_highlights or not (region & image.coloured).any():
+    region = region_of_interest(image, camera, height, parameters)
+    box = bounding_box(region)
+    known, shape = image.coloured[box], region.shape
+    intensity = _intensity(image.colour[box], known)
+    levels, candidates = np.zeros(shape, np.uint8), np.zeros(shape, np.int32)
+    levels[box] = np.minimum(intensity * parameters.grey_levels, parameters.grey_levels - 1)
+    empty = Highlights(region, levels, candidates, np.zeros(shape, bool), (), image.colour)
+    if not parameters.correct_highlights or not (region[box] & known).any():
         return empty
-    candidates, numbers = _candidates(levels, image.coloured, region, parameters)
-    regions, contours = np.zeros(region.shape, np.uint8), []
+    candidates[box], numbers = _candidates(levels[box], known, region[box], parameters)
+    # no lobe reaches further from its centre than the region of interest does: it grows with the distance to the wall
+    longest = float(np.tan(parameters.highlight_roi_angle) * abs(camera[2]) / parameters.pixel_size)
+    corner = np.array([box[0].start, box[1].start], float)
+    drawn, contours = np.zeros(shape, np.uint8), []
     for number in numbers:
-        rows, columns = np.nonzero(candidates == number)
-        contour = _contour(intensity, image.coloured, np.array([rows.mean(), columns.mean()]), parameters)
+        rows, columns = np.nonzero(candidates[box] == number)
+        contour = _contour(intensity, known, np.array([rows.mean(), columns.mean()]), longest, parameters)
         if contour is not None:
-            _fill_spline(regions, contour)
-            contours.append(contour)
-    found = (regions > 0) & image.coloured
+            contours.append(contour + corner)
+            _fill_spline(drawn, contours[-1])
+    found = (drawn > 0) & region & image.coloured
     return Highlights(region, levels, candidates, found, tuple(contours), _repaired(image, found))
+
+
+def bounding_box(mask: Mask, margin: int = 0) -> tuple[slice, slice]:
+    """Rows and columns that hold every True, and some more where there are; empty slices if there is none."""
+    if not mask.any():
+        return np.s_[0:0, 0:0]
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return (
+        slice(max(int(rows[0]) - margin, 0), int(rows[-1]) + margin + 1),
+        slice(max(int(columns[0]) - margin, 0), int(columns[-1]) + margin + 1),
+    )
+
+
+def _intensity(colour: Image, known: Mask) -> NDArray[np.float32]:
+    """Smoothed intensity in 0..1, with unknown pixels filled in and dark lines closed; empty from an empty image."""
+    if colour.size == 0:
+        return np.zeros(known.shape, np.float32)
+    grey = nearest(cv2.transform(colour, np.full((1, 3), 1 / 3, np.float32)), known).astype(np.float32) / 255
+    closed = cv2.morphologyEx(grey, cv2.MORPH_CLOSE, np.ones((LINE_PX, LINE_PX), np.uint8))
+    return cv2.GaussianBlur(closed, (0, 0), SMOOTHING_PX)
+
+
+def region_of_interest(
+    image: Orthoimage, camera: NDArray[np.float64], height: float, parameters: DetectorParameters
+) -> Mask:
+    """(H, W) where a view can have highlights: round the foot of the perpendicular from its camera, as a mirror would.
+
+    A Blinn-Phong lobe of MuJoCo's default shininess, exponent 64, is below 1e-5 at its border.
+    """
+    return incidence(image, camera, height)[0] < parameters.highlight_roi_angle
 
 
 def _candidates(
     levels: Image, known: Mask, region: Mask, parameters: DetectorParameters
 ) -> tuple[NDArray[np.int32], list[int]]:
-    """Segments of one grey level surrounded by lower levels and without a segment inside, largest first."""
+    """Segments of one grey level surrounded by lower levels, largest first.
+
+    The paper's segments contain no other. An overexposed top is darker in the middle after the fall-off of the flash
+    was divided out, so that ours may: the profiles tell it from a ring.
+    """
     from skimage.measure import label, regionprops
 
     coded = np.where(known, levels.astype(np.int32) + 1, 0)
@@ -79,7 +127,7 @@ def _candidates(
     peaks[0] = False
     minimum = parameters.highlight_min_area / parameters.pixel_size**2 / 8  # the top level is the tip of the highlight
     kept = np.where(peaks[segments], segments, 0)
-    found = [p for p in regionprops(kept) if p.area >= minimum and p.euler_number == 1]
+    found = [p for p in regionprops(kept) if p.area >= minimum]
     found = [p for p in found if region[tuple(np.rint(p.centroid).astype(int))]]
     found.sort(key=lambda p: (-p.area, p.label))
     numbered = np.zeros(count, np.int32)
@@ -89,44 +137,27 @@ def _candidates(
 
 
 def _contour(
-    intensity: NDArray, known: Mask, centre: NDArray, parameters: DetectorParameters
+    intensity: NDArray, known: Mask, centre: NDArray, longest: float, parameters: DetectorParameters
 ) -> NDArray[np.float64] | None:
-    """(8, 2) end points of the profiles through a region's centroid, or None if none of the four fits a Gaussian."""
-    longest = parameters.highlight_max_radius / parameters.pixel_size
+    """(8, 2) end points of the profiles through a region's centroid, or None if too few of them are a Gaussian's."""
     profiles = [_half_profile(intensity, known, centre, step, longest) for step in DIRECTIONS]
-    feet = sum(p.has_foot and p.values[0] - p.values[-1] > parameters.highlight_min_contrast / 2 for p in profiles)
-    if feet < MIN_FEET:  # the fall-off of the flash, or a bright surface: not a highlight
+    strides = np.hypot(*DIRECTIONS.T)  # a diagonal step is longer [px]
+    widths = np.array([_flank_width(p, s, parameters) for p, s in zip(profiles, strides, strict=True)])
+    if np.isfinite(widths).sum() < MIN_FLANKS:  # a bright surface, or too much of it hidden: not a highlight
         return None
-    full = [np.concatenate([profiles[i + 4].values[:0:-1], profiles[i].values]) for i in range(4)]
-    if not any(_is_gaussian(profile, parameters) for profile in full):
-        return None
-    return np.array([centre + (len(p.values) - 1) * step for p, step in zip(profiles, DIRECTIONS, strict=True)])
+    reach = FOOT * np.where(np.isfinite(widths), widths, np.nanmedian(widths))
+    ends = np.minimum(reach / strides, [len(p) - 1 for p in profiles])
+    return centre + ends[:, None] * DIRECTIONS
 
 
-@dataclass(frozen=True, eq=False)
-class _HalfProfile:
-    """Intensity along one direction from a region's centroid to where the highlight ends."""
-
-    values: NDArray
-    """(n,) at least the centroid's own."""
-    has_foot: bool
-    """The slope reached zero there; else a discontinuity or the end of the data cut it off."""
-
-
-def _half_profile(intensity: NDArray, known: Mask, centre: NDArray, step: NDArray, longest: float) -> _HalfProfile:
-    """Intensity from the centroid outwards, until the slope gets to zero or breaks, or the data end."""
+def _half_profile(intensity: NDArray, known: Mask, centre: NDArray, step: NDArray, longest: float) -> NDArray:
+    """(n,) intensity from the centroid outwards, until it breaks or the data end; n is at least 1."""
     path = np.rint(centre + np.arange(max(2, int(longest / np.hypot(*step))))[:, None] * step).astype(int)
     inside = ((path >= 0) & (path < known.shape)).all(axis=1)
     path = path[: _first(~inside)]
     path = path[: max(1, _first(~known[path[:, 0], path[:, 1]]))]
     values = intensity[path[:, 0], path[:, 1]]
-    if len(values) <= FLAT_RUN:
-        return _HalfProfile(values[:1], has_foot=False)
-    broken = _first(np.abs(np.diff(values)) > DISCONTINUITY)
-    descending = values[:-FLAT_RUN] - values[FLAT_RUN:] > FLAT
-    below_top = values[0] - values[:-FLAT_RUN] > 2 * FLAT  # the clipped top is flat, too
-    flat = _first(below_top & ~descending)
-    return _HalfProfile(values[: min(broken, flat) + 1], has_foot=flat < min(broken, len(descending)))
+    return values[: _first(np.abs(np.diff(values)) > DISCONTINUITY * np.hypot(*step)) + 1]
 
 
 def _first(mask: NDArray[np.bool_]) -> int:
@@ -134,26 +165,27 @@ def _first(mask: NDArray[np.bool_]) -> int:
     return int(mask.argmax()) if mask.any() else len(mask)
 
 
-def _is_gaussian(profile: NDArray, parameters: DetectorParameters) -> bool:
-    """Whether a profile is a Gaussian over a level foot, cut at the top if the photograph was overexposed."""
-    from scipy.optimize import curve_fit
+def _flank_width(profile: NDArray, stride: float, parameters: DetectorParameters) -> float:
+    """Standard deviation [px] of the Gaussian round the centroid whose flank a half profile is; NaN if it is none.
 
-    if len(profile) < 9 or np.ptp(profile) < parameters.highlight_min_contrast:
-        return False
-    x = np.linspace(-1, 1, len(profile))
-    ceiling = profile.max()
-
-    def model(x: NDArray, height: float, mean: float, width: float, foot: float) -> NDArray:
-        return np.minimum(foot + height * np.exp(-0.5 * ((x - mean) / width) ** 2), ceiling)
-
-    start = (np.ptp(profile), x[np.argmax(profile)], 0.4, profile.min())
-    bounds = ([0, -0.8, 0.05, -0.5], [5, 0.8, 1.5, 1.0])
-    try:
-        fitted, _ = curve_fit(model, x, profile, np.clip(start, bounds[0], bounds[1]), bounds=bounds, max_nfev=60)
-    except RuntimeError:  # no convergence within max_nfev: not a Gaussian
-        return False
-    residual = ((profile - model(x, *fitted)) ** 2).sum()
-    return 1 - residual / ((profile - profile.mean()) ** 2).sum() >= parameters.highlight_r2
+    Args:
+        profile: (n,) intensity from the centroid outwards.
+        stride: Distance between its samples [px].
+    """
+    top = profile.max()
+    start = len(profile) - 1 - int((profile[::-1] > top - PLATEAU).argmax())
+    flank = profile[start:]
+    if profile[0] < top - HOLLOW or len(flank) < 9 or np.ptp(profile) < parameters.highlight_min_contrast:
+        return float("nan")
+    # foot + height * exp(-r^2 / 2 width^2) is linear in foot and height: least squares for every width at once
+    distances = stride * np.arange(start, len(profile))
+    bells = np.exp(-0.5 * (distances / WIDTHS[:, None]) ** 2)
+    centred, values = bells - bells.mean(axis=1, keepdims=True), flank - flank.mean()
+    energy = np.maximum((centred**2).sum(axis=1), 1e-12)
+    explained = np.where(centred @ values > 0, (centred @ values) ** 2 / energy, 0) / (values**2).sum()
+    best = int(explained.argmax())
+    seen = distances[-1] / WIDTHS[best]
+    return float(WIDTHS[best]) if explained[best] >= parameters.highlight_r2 and seen >= MIN_REACH else float("nan")
 
 
 def _fill_spline(regions: NDArray[np.uint8], contour: NDArray[np.float64]) -> None:
@@ -169,8 +201,11 @@ def _repaired(image: Orthoimage, found: Mask) -> Image:
     """The colour with the highlights filled in, and nothing bled in from where no colour is known."""
     if not found.any():
         return image.colour
-    filled = inpaint(nearest(image.colour, image.coloured), found)
-    return np.where(image.coloured[..., None], filled, np.uint8(0))
+    box = bounding_box(found, margin=MARGIN_PX)
+    repaired, known = image.colour.copy(), image.coloured[box]
+    filled = inpaint(nearest(image.colour[box], known), found[box])
+    repaired[box] = np.where(known[..., None], filled, np.uint8(0))
+    return repaired
 
 
 def inpaint(colour: Image, mask: Mask, radius_px: int = 5) -> Image:
@@ -180,12 +215,13 @@ def inpaint(colour: Image, mask: Mask, radius_px: int = 5) -> Image:
     """
     if not mask.any():
         return colour
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    margin = 2 * radius_px
-    box = np.s_[
-        max(rows[0] - margin, 0) : rows[-1] + margin + 1, max(columns[0] - margin, 0) : columns[-1] + margin + 1
-    ]
+    box = bounding_box(mask, margin=MARGIN_PX)
     filled = colour.copy()
-    grown = cv2.dilate(mask[box].astype(np.uint8), np.ones((3, 3), np.uint8))
-    filled[box] = cv2.inpaint(np.ascontiguousarray(colour[box]), grown, radius_px, cv2.INPAINT_TELEA)
+    part, grown = np.ascontiguousarray(colour[box]), cv2.dilate(mask[box].astype(np.uint8), np.ones((3, 3), np.uint8))
+    shrink = max(1.0, float(np.sqrt(grown.sum() / INPAINTED_PX)))
+    size = (max(1, round(part.shape[1] / shrink)), max(1, round(part.shape[0] / shrink)))
+    small = cv2.resize(part, size, interpolation=cv2.INTER_AREA)
+    small_mask = (cv2.resize(grown * np.float32(1), size, interpolation=cv2.INTER_AREA) > 0).astype(np.uint8)
+    patch = cv2.resize(cv2.inpaint(small, small_mask, radius_px, cv2.INPAINT_TELEA), part.shape[1::-1])
+    filled[box] = np.where(grown[..., None] > 0, patch, part)
     return filled

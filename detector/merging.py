@@ -8,12 +8,21 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from detector.highlights import bounding_box
 from detector.illumination import incidence
 from detector.parameters import DetectorParameters
-from detector.result import Highlights, Orthoimage
+from detector.result import Highlights, Image, Mask, Orthoimage
 
 CONTOUR_FILTER = 5
 """Side of the mean filter over the contour of a highlight [px]; section 4.2 gives none."""
+GLOSS = 0.03
+"""Standard deviation of the brightness, of 1, that two views of matt paint differ by: 0.08 more is gloss."""
+NO_GLOSS_ANGLE = 0.35
+"""Incidence beyond which a view shows no gloss [rad]: a lobe of MuJoCo's default exponent, 64, has fallen to 2 %."""
+ENOUGH = 500
+"""Pixels that two views are compared on at least."""
+SAMPLES = 20_000
+"""Pixels that are enough to compare them on."""
 
 
 def view_weights(angles: NDArray, specular: NDArray[np.bool_], parameters: DetectorParameters) -> NDArray[np.float32]:
@@ -26,6 +35,51 @@ def view_weights(angles: NDArray, specular: NDArray[np.bool_], parameters: Detec
     mean = np.where(specular, np.float32(parameters.w2_mean), np.float32(parameters.w1_mean))
     std = np.where(specular, np.float32(parameters.w2_std), np.float32(parameters.w1_std))
     return np.exp(-0.5 * ((angles - mean) / std) ** 2).astype(np.float32)
+
+
+def matt_colours(
+    images: Sequence[Orthoimage], highlights: Sequence[Highlights], angles: Sequence[NDArray[np.float32]]
+) -> list[tuple[Image, Mask]]:
+    """Colours of each view with its highlights replaced by what other views see there (ours).
+
+    What the flash mirrors depends on the view, the colour of the wall does not (Shafer, "Using color to separate
+    reflection components", 1985), and gloss adds to every channel. Within a view's region of interest, a pixel that is
+    brighter in all channels than in a more oblique view, whose lobe has ended there, takes the colour of that one,
+    brought to the brightness that this view has round its highlight. So no step appears where the replacement ends.
+
+    Args:
+        images: Views of even light, as they were before highlights were filled in.
+        angles: (H, W) incidence of each view [rad].
+
+    Returns:
+        (H, W, 3) colour and (H, W) where it is only inpainted, for each view.
+    """
+    kept = np.exp(-0.5 * (np.arange(256, dtype=np.float32) / 255 / GLOSS) ** 2)
+    result = []
+    for k, (image, found) in enumerate(zip(images, highlights, strict=True)):
+        colour, guessed = found.inpainted.copy(), found.regions.copy()
+        result.append((colour, guessed))
+        box = bounding_box(found.region_of_interest & image.coloured)
+        own, matt, told = image.colour[box], np.zeros_like(image.colour[box]), np.zeros_like(guessed[box])
+        for j, other in enumerate(images):
+            sees = found.region_of_interest[box] & image.coloured[box] & other.coloured[box]
+            sees &= angles[j][box] > np.maximum(angles[k][box], NO_GLOSS_ANGLE)
+            rim = np.flatnonzero(sees & (angles[k][box] > NO_GLOSS_ANGLE) & ~found.regions[box])
+            if j == k or len(rim) < ENOUGH:
+                continue
+            some = rim[:: 1 + len(rim) // SAMPLES]
+            here, there = (c.reshape(-1, 3)[some].mean(axis=1) for c in (own, other.colour[box]))
+            matched = cv2.convertScaleAbs(other.colour[box], alpha=float(np.median(here / np.maximum(there, 1))))
+            # of several, the brightest: one that is too dark by mistake takes nothing out
+            np.maximum(matt, matched, out=matt, where=sees[..., None])
+            told |= sees
+        if not told.any():
+            continue
+        gloss = cv2.subtract(own[told], matt[told]).min(axis=1)
+        own_part = kept[gloss][:, None]
+        colour[box][told] = np.rint(own_part * own[told] + (1 - own_part) * matt[told])
+        guessed[box] &= ~told
+    return result
 
 
 def merge(
@@ -45,14 +99,17 @@ def merge(
     depth = np.full(shape, np.nan, np.float32)
     total, colour = np.zeros(shape, np.float32), np.zeros((*shape, 3), np.float32)
     contour = np.zeros(shape, np.uint8)
-    for image, found, camera in zip(images, highlights, cameras, strict=True):
+    angles = [incidence(image, camera, height)[0] for image, camera in zip(images, cameras, strict=True)]
+    colours = [(h.inpainted, h.regions) for h in highlights]
+    if parameters.correct_highlights and len(images) > 1:
+        colours = matt_colours(images, highlights, angles)
+    for image, angle, (seen, guessed) in zip(images, angles, colours, strict=True):
         depth = np.fmax(depth, image.depth)
-        weight = view_weights(incidence(image, camera, height)[0], found.regions, parameters)
         # the floor keeps a pixel that only oblique views saw, whose weight would vanish in 32 bits
-        weight = np.where(image.coloured, np.maximum(weight, 1e-12), 0)
+        weight = np.where(image.coloured, np.maximum(view_weights(angle, guessed, parameters), 1e-12), 0)
         total += weight
-        colour += weight[..., None] * found.inpainted
-        contour |= cv2.morphologyEx(found.regions.astype(np.uint8), cv2.MORPH_GRADIENT, np.ones((5, 5), np.uint8))
+        colour += weight[..., None] * seen
+        contour |= cv2.morphologyEx(guessed.astype(np.uint8), cv2.MORPH_GRADIENT, np.ones((5, 5), np.uint8))
     coloured = total > 0
     merged = colour / np.where(coloured, total, 1)[..., None]
     if contour.any():

@@ -42,7 +42,6 @@ class DetectorParameters(BaseModel):
         0.6, gt=0, le=1.5, description="incidence that bounds the region of interest [rad]"
     )
     highlight_min_area: float = Field(8e-4, gt=0, description="smallest highlight [m2]; section 7.4")
-    highlight_max_radius: float = Field(0.7, gt=0, description="longest half profile [m]; ours, > sqrt(0.27 m2 / pi)")
     highlight_min_contrast: float = Field(
         0.06, gt=0, le=1, description="least height of a highlight over its foot; ours"
     )
