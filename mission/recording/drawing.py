@@ -102,10 +102,14 @@ def thin(
     sample = points[::stride]
     if len(sample) == 0:
         return np.zeros(0, np.int64)
-    cells = np.floor(sample / np.float32(cell) + np.float32(0.5)).astype(np.int64)
-    cells -= cells.min(axis=0)
-    extent = cells.max(axis=0) + 1
-    keys = (cells[:, 0] * extent[1] + cells[:, 1]) * extent[2] + cells[:, 2]
+    cells = np.array(
+        sample.T, np.float32, order="C"
+    )  # axis by axis: minima along the long side are a tenth of the time
+    cells /= np.float32(cell)
+    cells += np.float32(0.5)
+    np.floor(cells, out=cells)
+    x, y, z = (cells - cells.min(axis=1, keepdims=True)).astype(np.int64)
+    keys = (x * (y.max() + 1) + y) * (z.max() + 1) + z
     chosen = np.unique(keys, return_index=True)[1]
     chosen = chosen[:: max(1, -(-len(chosen) // limit))]
     return np.sort(chosen) * stride
@@ -174,7 +178,7 @@ def angle_label(evaluation: DoorEvaluation) -> str:
 
 def jpeg(image: NDArray[np.uint8], *, quality: int = DISPLAY_QUALITY) -> bytes:
     """An sRGB image (H, W, 3) or a grey one (H, W) as JPEG."""
-    bgr = image if image.ndim == 2 else np.ascontiguousarray(image[:, :, ::-1])  # OpenCV has blue first
+    bgr = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_RGB2BGR)  # OpenCV has blue first
     ok, data = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])
     assert ok
     return data.tobytes()
@@ -186,4 +190,6 @@ def shrink(image: NDArray[np.uint8], *, width: int) -> tuple[NDArray[np.uint8], 
     if factor == 1.0:
         return image, 1.0
     size = (width, max(1, round(image.shape[0] * factor)))
-    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8), factor
+    # Means over areas take five times as long, and are needed only where bilinear would skip pixels.
+    method = cv2.INTER_AREA if factor < 0.5 else cv2.INTER_LINEAR
+    return np.asarray(cv2.resize(image, size, interpolation=method), np.uint8), factor

@@ -99,6 +99,21 @@ def test_two_quadrilaterals_are_four_triangles() -> None:
     assert areas.tolist() == [1.0, 1.0, 1.0, 1.0]
 
 
+@pytest.mark.parametrize("count", [1, 7])
+def test_thinning_leaves_the_cloud_as_it_was(count: int) -> None:
+    cloud = np.full((count, 3), 1.234, np.float32)
+    assert thin(cloud).tolist() == [0]
+    assert (cloud == np.float32(1.234)).all()
+
+
+@pytest.mark.parametrize("width", [300, 80, 20])
+def test_a_shrunken_picture_keeps_its_brightness(width: int) -> None:
+    # Stripes of one pixel, black and white: skipping pixels would show one or the other.
+    image = np.zeros((90, 400, 3), np.uint8)
+    image[:, ::2] = 255
+    assert shrink(image, width=width)[0].mean() == pytest.approx(127.5, abs=2)
+
+
 def test_every_event_has_a_sentence_of_its_own() -> None:
     lines = [sentence(event) for event in story()]
     assert all(line and "\n" not in line for line in lines)
