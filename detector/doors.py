@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,17 +22,12 @@ from detector.edges import find_edges
 from detector.parameters import DetectorParameters
 from detector.rectangles import find_lines
 from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rectangle, WallArea
+from detector.selection import smallest
 
 LINE_SHARE = 0.45
 """Share of the window that a line covers at least: of the shortest side of a door, with occlusion."""
-ALIKE = 0.045
-"""Rectangles whose sides all lie this close are readings of the same door [m]."""
-OTHER_LEAF = (0.4, 1.3)
-"""Width of the second leaf of a double door [m]."""
-FAIRLY_SET, WELL_SET = 0.5, 0.7
-"""Least share of wall along each side's outside, and the share that leaves no doubt about the side."""
-SUPPORT_SLACK = 0.06
-"""Sums of support that differ by less do not tell which of two lines is the side."""
+FAIRLY_SET = 0.5
+"""Least share of wall along each side's outside."""
 OPEN_SHARE = 0.15
 """A rectangle that is looked through over more than this share is open."""
 CLEAR_SUPPORT = 0.8
@@ -42,7 +35,7 @@ CLEAR_SUPPORT = 0.8
 MAX_OVERSHOOT = 0.5
 SHOWN = 30
 """Rejected candidates that are kept for the record."""
-JUDGED = 80
+JUDGED = 160
 """Candidates that reach the costly conditions at most."""
 
 
@@ -93,11 +86,11 @@ def judge(
     support, feet = side_support(boxes, scene, parameters)
     wall, visible, through = inner_shares(boxes, scene)
     around = surroundings(boxes, scene)
-    wall = np.where(_stand_alone(boxes, support, feet, scene), 0.0, wall)
+    alone = _stand_alone(boxes, support, feet, scene)
     reasons = np.full(len(boxes), None, object)
     checks = (
         ("door frame occlusion", support.min(axis=1) < parameters.alpha2),
-        ("location consistency", wall > parameters.alpha3),
+        ("location consistency", (wall > parameters.alpha3) & ~alone),
         ("panel occlusion", visible < parameters.min_visible),
         ("floor", feet.min(axis=1) < FOOT_SUPPORT),
         ("surroundings", around.min(axis=1) < FAIRLY_SET),
@@ -125,7 +118,7 @@ def judge(
                 surroundings=float(around[i].min()),
             )
         )
-    return _smallest(candidates)
+    return smallest(candidates)
 
 
 def _stand_alone(boxes: Boxes, support: NDArray, feet: NDArray, scene: Scene) -> NDArray[np.bool_]:
@@ -160,55 +153,6 @@ def _rectangle(box: Boxes, pixel_size: float, height: float, floor: float) -> Re
     """A box in wall coordinates; it stands on the floor."""
     left, right, top = (float(x[0] + 0.5) * pixel_size for x in (box.left, box.right, box.top))
     return Rectangle(left, floor, right, height - top)
-
-
-def _smallest(candidates: list[Candidate]) -> tuple[Candidate, ...]:
-    """Condition 4: of nested rectangles that fulfil the others, the smallest.
-
-    The paper heads this condition "Minimum size" but writes that r must not be contained in another rectangle, which
-    would keep the outline of the frame instead of that of the leaf; the heading is followed. Rectangles a few pixels
-    apart are readings of one door: of those the best supported one stands for all.
-    """
-    fulfilled = [c for c in candidates if c.rejected_by is None]
-    accepted = [c for c in fulfilled if not any(_is_leaf_of(c.rectangle, other.rectangle) for other in fulfilled)]
-    accepted.sort(key=lambda c: (c.rectangle.area, c.rectangle.left))
-    kept: list[Candidate] = []
-    taken: set[int] = set()
-    for candidate in accepted:
-        if any(_covers(candidate.rectangle, k.rectangle) for k in kept):
-            continue
-        alike = [c for c in accepted if id(c) not in taken and _alike(c.rectangle, candidate.rectangle)]
-        taken.update(id(c) for c in alike)
-        kept.append(_best_reading(alike))
-    kept.sort(key=lambda c: c.rectangle.left)
-    losers = [replace(c, rejected_by="minimum size") for c in fulfilled if not any(c is k for k in kept)]
-    return (*kept, *losers, *(c for c in candidates if c.rejected_by is not None))
-
-
-def _alike(a: Rectangle, b: Rectangle) -> bool:
-    """Whether all sides lie within a few centimetres."""
-    return max(abs(a.left - b.left), abs(a.right - b.right), abs(a.top - b.top)) < ALIKE
-
-
-def _best_reading(alike: list[Candidate]) -> Candidate:
-    """The smallest of those readings of one door that are well set in wall and supported as well as any."""
-    alike = [c for c in alike if c.surroundings > WELL_SET] or alike
-    support = max(sum(c.side_support) for c in alike)
-    return min((c for c in alike if sum(c.side_support) > support - SUPPORT_SLACK), key=lambda c: c.rectangle.area)
-
-
-def _is_leaf_of(leaf: Rectangle, whole: Rectangle) -> bool:
-    """Whether one rectangle is half of another that is a double door: what is left of that is a leaf, too."""
-    level = abs(leaf.top - whole.top) < ALIKE
-    shared = abs(leaf.left - whole.left) < ALIKE or abs(leaf.right - whole.right) < ALIKE
-    return level and shared and OTHER_LEAF[0] <= whole.width - leaf.width <= OTHER_LEAF[1]
-
-
-def _covers(outer: Rectangle, inner: Rectangle) -> bool:
-    """Whether two rectangles claim the same piece of wall."""
-    width = min(outer.right, inner.right) - max(outer.left, inner.left)
-    height = min(outer.top, inner.top) - max(outer.bottom, inner.bottom)
-    return width > 0 and height > 0 and width * height > 0.3 * min(outer.area, inner.area)
 
 
 def doorway_rectangles(search: DoorSearch) -> tuple[Rectangle, ...]:
