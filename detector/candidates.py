@@ -25,7 +25,7 @@ FAINT_DEPTH = 0.003
 """Least difference of depth on all sides that sets a surface apart [m]."""
 OVERSHOOT = 0.15
 """How far beyond its corners the outline of a door must have ended [m]."""
-SAMPLED_PX = 4
+SAMPLED_PX = 6
 """Every so many pixels are enough for the shares of a rectangle."""
 SAME_COLOUR = 0.02
 """Colours closer than this in every channel are the same, of 1."""

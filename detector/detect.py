@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
+from numpy.typing import NDArray
 
 from detector.doors import doorway_rectangles, find_doors
 from detector.edges import wall_face
 from detector.highlights import find_highlights
-from detector.illumination import equalised, without_falloff
+from detector.illumination import even_light
 from detector.leaves import describe_door, join_leaves
 from detector.merging import merge
 from detector.openings import find_openings, visibility
-from detector.orthoimage import WallPoints, crop, image_shape, mark, orthoimage, sampling_gap
+from detector.orthoimage import crop, image_shape, mark, orthoimage, sampling_gap
 from detector.outline import settle_sides
 from detector.parameters import DetectorParameters
-from detector.result import Door, Orthoimage, WallResult
+from detector.result import Mask, Orthoimage, WallResult
 from detector.room import DetectorError, Room, Wall
 from detector.wall_area import find_wall_area
 
@@ -46,40 +48,33 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
     """All stages on one wall."""
     clock = _Clock()
     check_wall(wall)
-    shape = image_shape(wall, parameters)
     floor = float(np.clip(room.floor_height - wall.origin[2], 0, wall.height))
     with clock("orthoimages"):
-        crops = [crop(view, wall, floor, parameters) for view in room.views]
-        points = [c for c in crops if c is not None]
-        gaps = [sampling_gap(p, parameters) for p in points]
-        views = [orthoimage(p, wall, g, parameters) for p, g in zip(points, gaps, strict=True)]
-        passed = np.zeros(shape, bool)
-        blocked = np.zeros(shape, bool)
-        face = np.any([wall_face(view, parameters) for view in views], axis=0) if views else np.zeros(shape, bool)
-        for p, g in zip(points, gaps, strict=True):
-            passed |= mark(p.passed, wall, g, parameters)
-            blocked |= mark(p.blocked, wall, parameters.max_gap_px, parameters)
+        look = look_at(room, wall, floor, parameters)
     with clock("highlights"):
-        even = even_light(views, points, wall.height, parameters)
-        highlights = [find_highlights(i, p.camera, wall.height, parameters) for i, p in zip(even, points, strict=True)]
+        even = (
+            even_light(look.views, look.cameras, wall.height, look.faces) if parameters.normalise_flash else look.views
+        )
+        highlights = [
+            find_highlights(view, camera, wall.height, parameters)
+            for view, camera in zip(even, look.cameras, strict=True)
+        ]
     with clock("merging"):
-        cameras = [p.camera for p in points]
-        merged = merge(even, highlights, cameras, wall.height, parameters) if views else _empty(shape, parameters)
+        merged = merge(even, highlights, look.cameras, wall.height, parameters) if even else _empty(wall, parameters)
     with clock("openings"):
-        seen = visibility(merged, passed, blocked, wall)
+        seen = visibility(merged, look.passed, look.blocked, wall)
         openings = find_openings(merged, seen, wall, floor, parameters)
     with clock("wall area"):
         area = find_wall_area(merged, parameters)
     with clock("doors"):
-        search, scene = find_doors(merged, seen, face, area, (wall.height, floor), parameters)
-        rectangles = settle_sides(doorway_rectangles(search), passed, scene, wall.height)
+        search, scene = find_doors(merged, seen, look.face, area, (wall.height, floor), parameters)
+        rectangles = settle_sides(doorway_rectangles(search), look.passed, scene, wall.height)
     with clock("angles"):
-        around = np.concatenate([p.around for p in points]) if points else np.zeros((0, 3), np.float32)
-        doors: list[Door] = [describe_door(r, merged, seen, around, wall.height, parameters) for r in rectangles]
+        doors = [describe_door(r, merged, seen, look.around, wall.height, parameters) for r in rectangles]
     return WallResult(
         wall=wall,
-        views=tuple(views),
-        view_numbers=tuple(i for i, c in enumerate(crops) if c is not None),
+        views=tuple(look.views),
+        view_numbers=look.numbers,
         highlights=tuple(highlights),
         merged=merged,
         openings=openings,
@@ -87,6 +82,52 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         search=search,
         doors=tuple(join_leaves(doors)),
         stage_seconds=tuple(clock.seconds),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """What the views of a room show of one wall."""
+
+    numbers: tuple[int, ...]
+    """Index into `Room.views` of each view that saw the wall; the lists below are in this order."""
+    views: list[Orthoimage]
+    """J_CD^k."""
+    cameras: list[NDArray[np.float64]]
+    """(3,) centre of each camera in wall coordinates [m]."""
+    faces: list[Mask]
+    """(H, W) where each view shows the wall's face."""
+    face: Mask
+    """(H, W) where any view does."""
+    passed: Mask
+    """(H, W) where beams went through the wall's face."""
+    blocked: Mask
+    """(H, W) where beams ended well before the wall."""
+    around: NDArray[np.float32]
+    """(N, 3) points up to a leaf's width from the wall, in wall coordinates [m]."""
+
+
+def look_at(room: Room, wall: Wall, floor: float, parameters: DetectorParameters) -> Look:
+    """Everything that is read from the points themselves, view by view (section 4)."""
+    nothing = np.zeros(image_shape(wall, parameters), bool)
+    crops = {i: crop(view, wall, floor, parameters) for i, view in enumerate(room.views)}
+    points = {i: c for i, c in crops.items() if c is not None}
+    views, passed, blocked = [], nothing.copy(), nothing.copy()
+    for p in points.values():
+        gap = sampling_gap(p, parameters)
+        views.append(orthoimage(p, wall, gap, parameters))
+        passed |= mark(p.passed, wall, gap, parameters)
+        blocked |= mark(p.blocked, wall, parameters.max_gap_px, parameters)
+    faces = [wall_face(view, parameters) for view in views]
+    return Look(
+        numbers=tuple(points),
+        views=views,
+        cameras=[p.camera for p in points.values()],
+        faces=faces,
+        face=np.any([nothing, *faces], axis=0),
+        passed=passed,
+        blocked=blocked,
+        around=np.concatenate([np.zeros((0, 3), np.float32), *(p.around for p in points.values())]),
     )
 
 
@@ -107,23 +148,11 @@ def check_wall(wall: Wall) -> None:
         raise DetectorError(f"Wall.voxel_labels: expected rows x columns, got shape {wall.voxel_labels.shape}")
 
 
-def even_light(
-    views: list[Orthoimage], points: list[WallPoints], height: float, parameters: DetectorParameters
-) -> list[Orthoimage]:
-    """The views brought to one brightness, unless `normalise_flash` is off."""
-    if not parameters.normalise_flash:
-        return views
-    faces = [np.abs(np.nan_to_num(v.depth, nan=np.inf)) < parameters.face_tolerance for v in views]
-    flat = [without_falloff(v, p, height, f) for v, p, f in zip(views, points, faces, strict=True)]
-    return equalised(flat, faces)
-
-
-def _empty(shape: tuple[int, int], parameters: DetectorParameters) -> Orthoimage:
+def _empty(wall: Wall, parameters: DetectorParameters) -> Orthoimage:
     """An orthoimage without a point."""
-    nothing = np.zeros(shape, bool)
-    return Orthoimage(
-        np.zeros((*shape, 3), np.uint8), nothing, np.full(shape, np.nan, np.float32), parameters.pixel_size
-    )
+    shape = image_shape(wall, parameters)
+    colour, coloured = np.zeros((*shape, 3), np.uint8), np.zeros(shape, bool)
+    return Orthoimage(colour, coloured, np.full(shape, np.nan, np.float32), parameters.pixel_size)
 
 
 class _Clock:

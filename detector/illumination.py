@@ -6,12 +6,18 @@ that views differ by tens of percent; a law with two unknowns (ambient light, fl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.orthoimage import WallPoints
 from detector.result import Mask, Orthoimage
 
+SAMPLES = 50_000
+"""Pixels that are enough to measure light on."""
+LEAST_OVERLAP = 500
+"""Pixels that two views must share to be compared."""
 BINS = 24
 """Quantiles of the fall-off that the light is measured in."""
 STEPS = np.arange(256) / 255.0
@@ -34,28 +40,58 @@ def incidence(image: Orthoimage, origin: NDArray[np.float64], height: float) -> 
     return np.arccos(np.clip(np.float32(origin[2]) / ranges, -1, 1)), ranges
 
 
-def without_falloff(image: Orthoimage, points: WallPoints, height: float, on_face: Mask) -> Orthoimage:
-    """The view as if its light were even: divided by the fall-off fitted to its own wall pixels.
+def even_light(
+    images: Sequence[Orthoimage], cameras: Sequence[NDArray[np.float64]], height: float, faces: Sequence[Mask]
+) -> list[Orthoimage]:
+    """The views as if their light were even and the same: each divided by the fall-off fitted to its own wall pixels,
+    and brought to the brightness of the views before it by the median ratio where they overlap.
 
     Args:
-        on_face: (H, W) pixels to fit to.
+        cameras: (3,) centre of each view's camera in wall coordinates [m].
+        height: Height of the wall [m].
+        faces: (H, W) for each view: pixels of the wall's face.
     """
-    usable = on_face & image.coloured
+    gains: list[NDArray] = []
+    for k, (image, camera) in enumerate(zip(images, cameras, strict=True)):
+        gain = falloff_gain(image, camera, height, faces[k])
+        ratios = [_ratio((images[j], gains[j], faces[j]), (image, gain, faces[k])) for j in range(k)]
+        weights = [n for _, n in ratios]
+        if sum(weights) > 0:
+            gain = gain * np.float32(np.clip(np.average([r for r, _ in ratios], weights=weights), 0.25, 4.0))
+        gains.append(gain)
+    return [replace(i, colour=_scaled(i.colour, g)) for i, g in zip(images, gains, strict=True)]
+
+
+def falloff_gain(image: Orthoimage, camera: NDArray[np.float64], height: float, face: Mask) -> NDArray[np.float32]:
+    """(H, W) factor on the linear light that takes the flash's fall-off out; 1 where there is too little to fit."""
+    usable = face & image.coloured
     if usable.sum() < 50 * BINS:
-        return image
-    angles, ranges = incidence(image, points.camera, height)
+        return np.ones(face.shape, np.float32)
+    angles, ranges = incidence(image, camera, height)
     law = np.cos(angles) / ranges**2
-    luminance = LINEAR[image.colour].mean(axis=2)
-    ambient, flash = _fit(law[usable], luminance[usable])
+    some = np.flatnonzero(usable)
+    some = some[:: 1 + len(some) // SAMPLES]
+    light = LINEAR[image.colour.reshape(-1, 3)[some]].mean(axis=1)
+    ambient, flash = _fit(law.ravel()[some], light)
     expected = ambient + flash * law
-    gain = np.where(expected > 0, np.median(expected[usable]) / np.maximum(expected, 1e-6), 1.0)
-    return Orthoimage(_scaled(image.colour, np.clip(gain, 0.25, 4.0)), image.coloured, image.depth, image.pixel_size)
+    typical = np.median(expected.ravel()[some])
+    return np.clip(np.where(expected > 0, typical / np.maximum(expected, 1e-6), 1.0), 0.25, 4.0).astype(np.float32)
+
+
+def _ratio(reference: tuple[Orthoimage, NDArray, Mask], other: tuple[Orthoimage, NDArray, Mask]) -> tuple[float, int]:
+    """Median ratio of the light of two views (image, gain, face) on the wall that both see, and how much that is."""
+    both = np.flatnonzero(reference[2] & other[2] & reference[0].coloured & other[0].coloured)
+    if len(both) < LEAST_OVERLAP:
+        return 1.0, 0
+    some = both[:: 1 + len(both) // SAMPLES]
+    one, two = (LINEAR[i.colour.reshape(-1, 3)[some]].mean(axis=1) * g.ravel()[some] for i, g, _ in (reference, other))
+    return float(np.median(one / np.maximum(two, 1e-4))), len(both)
 
 
 def _fit(law: NDArray, luminance: NDArray) -> tuple[float, float]:
     """Ambient light and flash, none negative, from the median luminance of equally filled bins."""
-    order = np.argsort(law[:: 1 + len(law) // 100_000], kind="stable")
-    law, luminance = law[:: 1 + len(law) // 100_000][order], luminance[:: 1 + len(luminance) // 100_000][order]
+    order = np.argsort(law, kind="stable")
+    law, luminance = law[order], luminance[order]
     edges = np.linspace(0, len(law), BINS + 1).astype(int)
     x = np.array([np.median(law[a:b]) for a, b in zip(edges[:-1], edges[1:], strict=True)])
     y = np.array([np.median(luminance[a:b]) for a, b in zip(edges[:-1], edges[1:], strict=True)])
@@ -73,21 +109,3 @@ def _scaled(colour: NDArray[np.uint8], gain: NDArray) -> NDArray[np.uint8]:
     table = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055) * 255
     scaled = np.minimum(LINEAR[colour] * gain[..., None].astype(np.float32), 1)
     return np.rint(table[(scaled * SRGB_TABLE + 0.5).astype(np.int32)]).astype(np.uint8)
-
-
-def equalised(images: list[Orthoimage], on_face: list[Mask]) -> list[Orthoimage]:
-    """Views brought to the brightness of those before them, by the median ratio where they overlap."""
-    result: list[Orthoimage] = []
-    for k, image in enumerate(images):
-        ratios = []
-        for reference, face in zip(result, on_face[:k], strict=True):
-            both = face & on_face[k] & reference.coloured & image.coloured
-            if both.sum() >= 500:
-                light = [LINEAR[i.colour[both][:: 1 + both.sum() // 50_000]].mean(axis=1) for i in (reference, image)]
-                ratios.append((float(np.median(light[0] / np.maximum(light[1], 1e-4))), int(both.sum())))
-        if ratios:
-            gain = np.average([r for r, _ in ratios], weights=[n for _, n in ratios])
-            colour = _scaled(image.colour, np.full(image.depth.shape, np.clip(gain, 0.25, 4.0)))
-            image = Orthoimage(colour, image.coloured, image.depth, image.pixel_size)
-        result.append(image)
-    return result

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, WallArea
 
-RESTARTS = 3
+RESTARTS = 2
 ITERATIONS = 40
 COLOUR_SLACK = 0.02
 """Least half width of a cluster's box in each colour, of 1."""
@@ -55,16 +55,15 @@ def coherent_seeds(
     """
     side = parameters.seed_size
     rows, columns = known.shape[0] // side, known.shape[1] // side
-    shape = (rows, side, columns, side)
-    cut = np.s_[: rows * side, : columns * side]
-    full = known[cut].reshape(shape).all(axis=(1, 3))
-    patches = values[cut].reshape(*shape, 4)
-    coherent = full & (patches.std(axis=(1, 3)) <= parameters.sigma_max).all(axis=2)
-    stride = max(1, int(np.sqrt(coherent.sum() / parameters.max_seeds)))
-    regular = np.zeros_like(coherent)
-    regular[::stride, ::stride] = True
-    chosen = np.argwhere(coherent & regular)
-    return (chosen * side).astype(np.int32), patches.mean(axis=(1, 3))[chosen[:, 0], chosen[:, 1]]
+    cut = known[: rows * side, : columns * side].reshape(rows, side, columns, side)
+    full: Mask = np.asarray(cut.all(axis=(1, 3)))
+    stride = max(1, int(np.sqrt(full.sum() / parameters.max_seeds)))
+    seeds = np.argwhere(full[::stride, ::stride]).astype(np.int32) * stride * side
+    inner = np.arange(side)
+    patches = values[(seeds[:, 0, None] + inner)[:, :, None], (seeds[:, 1, None] + inner)[:, None, :]]
+    patches = patches.reshape(len(seeds), side * side, 4)
+    coherent = (patches.std(axis=1) <= parameters.sigma_max).all(axis=1)
+    return seeds[coherent], patches.mean(axis=1)[coherent]
 
 
 def adaptive_kmeans(means: NDArray[np.float32], parameters: DetectorParameters) -> NDArray[np.int32]:

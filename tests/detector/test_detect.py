@@ -95,7 +95,7 @@ def test_two_leaves_make_one_double_door() -> None:
     (door,) = detect_doors(make_room(Layout(doors=leaves), step_deg=STEP_DEG), COARSE)[0].doors
     assert door.kind == "double" and door.state == "semi-open"
     assert [np.rad2deg(leaf.opening_angle) for leaf in door.leaves] == pytest.approx([50, 0], abs=0.7)
-    assert (door.rectangle.left, door.rectangle.right) == pytest.approx((2.0, 3.606), abs=0.015)
+    assert (door.rectangle.left, door.rectangle.right) == pytest.approx((2.0, 3.606), abs=0.025)  # two pixels
 
 
 def test_a_doorway_without_a_leaf_into_nowhere_is_open_with_no_angle() -> None:

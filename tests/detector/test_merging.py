@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from detector.highlights import find_highlights, inpaint
-from detector.illumination import incidence, without_falloff
+from detector.illumination import even_light, incidence
 from detector.merging import merge, view_weights
-from detector.orthoimage import WallPoints
 from detector.parameters import DetectorParameters
 from detector.result import Highlights, Orthoimage
 from tests.detector.conftest import plain_image
@@ -48,13 +47,6 @@ def test_a_view_without_colour_does_not_count() -> None:
     assert (merged.colour == 80).all() and merged.coloured.all()
 
 
-def points_from(camera: np.ndarray) -> WallPoints:
-    nothing = np.zeros((0, 3), np.float32)
-    return WallPoints(
-        nothing, nothing.astype(np.uint8), np.zeros(0, bool), nothing[:, :2], nothing[:, :2], nothing, camera, camera
-    )
-
-
 def test_an_evenly_painted_wall_is_even_after_the_flash_falloff_is_taken_out() -> None:
     camera = np.array([0.3, 0.5, 0.8])
     angles, ranges = incidence(plain_image(), camera, 1.0)
@@ -62,8 +54,14 @@ def test_an_evenly_painted_wall_is_even_after_the_flash_falloff_is_taken_out() -
     srgb = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     lit = replace(plain_image(), colour=np.repeat(np.rint(srgb * 255).astype(np.uint8)[..., None], 3, axis=2))
     assert np.ptp(lit.colour) > 60
-    even = without_falloff(lit, points_from(camera), 1.0, np.ones((100, 200), bool))
+    (even,) = even_light([lit], [camera], 1.0, [np.ones((100, 200), bool)])
     assert np.ptp(even.colour) <= 4  # the fit is to medians of bins
+
+
+def test_views_of_different_brightness_are_brought_to_the_first() -> None:
+    everywhere, camera = np.ones((100, 200), bool), np.array([1.0, 0.5, 50.0])  # so far away that the light is even
+    first, second = even_light([plain_image(grey=120), plain_image(grey=180)], [camera] * 2, 1.0, [everywhere] * 2)
+    assert abs(int(second.colour[0, 0, 0]) - 120) <= 1 and (first.colour == second.colour[50, 100]).mean() > 0.99
 
 
 def spot(radius_px: float, height: float = 60.0) -> Orthoimage:
