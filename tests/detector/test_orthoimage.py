@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from detector.orthoimage import close_gaps, crop, image_shape, nearest, orthoimage, sampling_gap
+from detector.orthoimage import close_gaps, crop, image_shape, largest, nearest, orthoimage, sampling_gap
 from detector.parameters import DetectorParameters
 from detector.room import DetectorError, View, Wall
 
@@ -95,3 +95,9 @@ def test_wall_coordinates_and_world_coordinates_are_inverse() -> None:
     oblique = Wall(np.array([3.0, -4.0, 0.5]), u, np.array([0, 0, 1.0]), 2, 1, np.ones((5, 10), np.uint8))
     points = np.random.default_rng(0).uniform(-5, 5, (50, 3))
     np.testing.assert_allclose(oblique.world_from_wall(oblique.wall_from_world(points)), points, atol=1e-12)
+
+
+def test_the_largest_value_of_each_index_is_kept_to_the_bit() -> None:
+    values = np.float32([0.1, -0.3, 0.2, -0.7])
+    found = largest(np.array([0, 3, 0, 3]), values, 4)
+    np.testing.assert_array_equal(found, np.float32([0.2, np.nan, np.nan, -0.3]))
