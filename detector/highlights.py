@@ -21,6 +21,8 @@ MIN_FLANKS = 3
 """Half profiles, of eight, that must be a Gaussian's flank; an edge, a hole or an occlusion may cut the others off."""
 DISCONTINUITY = 0.02
 """Step of the intensity from one pixel to the next that ends a highlight: an edge of about 0.15 after smoothing."""
+SLOPE_PX = 25
+"""Window of the slope that a step is compared with: several times as wide as a smoothed edge."""
 PLATEAU = 0.03
 """Below the brightest by less than this, a profile is on the overexposed top, which is not fitted."""
 HOLLOW = 0.12
@@ -152,12 +154,18 @@ def _contour(
 
 def _half_profile(intensity: NDArray, known: Mask, centre: NDArray, step: NDArray, longest: float) -> NDArray:
     """(n,) intensity from the centroid outwards, until it breaks or the data end; n is at least 1."""
+    from scipy.ndimage import median_filter
+
     path = np.rint(centre + np.arange(max(2, int(longest / np.hypot(*step))))[:, None] * step).astype(int)
     inside = ((path >= 0) & (path < known.shape)).all(axis=1)
     path = path[: _first(~inside)]
     path = path[: max(1, _first(~known[path[:, 0], path[:, 1]]))]
     values = intensity[path[:, 0], path[:, 1]]
-    return values[: _first(np.abs(np.diff(values)) > DISCONTINUITY * np.hypot(*step)) + 1]
+    if len(values) < 2:
+        return values
+    slope = np.diff(values)
+    around = median_filter(slope, SLOPE_PX, mode="nearest")  # the flank of an overexposed lobe is steep, but for longer
+    return values[: _first(np.abs(slope - around) > DISCONTINUITY * np.hypot(*step)) + 1]
 
 
 def _first(mask: NDArray[np.bool_]) -> int:

@@ -19,6 +19,8 @@ GLOSS = 0.03
 """Standard deviation of the brightness, of 1, that two views of matt paint differ by: 0.08 more is gloss."""
 NO_GLOSS_ANGLE = 0.35
 """Incidence beyond which a view shows no gloss [rad]: a lobe of MuJoCo's default exponent, 64, has fallen to 2 %."""
+CORE_ANGLE = 0.25
+"""Incidence beyond which a view that is glossy, too, is still better than inpainting [rad]: 13 % of that lobe."""
 ENOUGH = 500
 """Pixels that two views are compared on at least."""
 SAMPLES = 20_000
@@ -44,7 +46,7 @@ def matt_colours(
 
     What the flash mirrors depends on the view, the colour of the wall does not (Shafer, "Using color to separate
     reflection components", 1985), and gloss adds to every channel. Within a view's region of interest, a pixel that is
-    brighter in all channels than in a more oblique view, whose lobe has ended there, takes the colour of that one,
+    brighter in all channels than in a more oblique view, further out on its lobe, takes the colour of that one,
     brought to the brightness that this view has round its highlight. So no step appears where the replacement ends.
 
     Args:
@@ -63,7 +65,8 @@ def matt_colours(
         own, matt, told = image.colour[box], np.zeros_like(image.colour[box]), np.zeros_like(guessed[box])
         for j, other in enumerate(images):
             sees = found.region_of_interest[box] & image.coloured[box] & other.coloured[box]
-            sees &= angles[j][box] > np.maximum(angles[k][box], NO_GLOSS_ANGLE)
+            sees &= angles[j][box] > angles[k][box]
+            sees &= ~highlights[j].regions[box] | (angles[j][box] > CORE_ANGLE)
             rim = np.flatnonzero(sees & (angles[k][box] > NO_GLOSS_ANGLE) & ~found.regions[box])
             if j == k or len(rim) < ENOUGH:
                 continue
