@@ -23,6 +23,7 @@ from detector.parameters import DetectorParameters
 from detector.rectangles import find_lines
 from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rectangle, WallArea
 from detector.selection import smallest
+from detector.sill import hangs
 
 LINE_SHARE = 0.45
 """Share of the window that a line covers at least: of the shortest side of a door, with occlusion."""
@@ -146,6 +147,8 @@ def _costly_reason(
         return "protrusion"
     if not steps(box, scene).are_real():
         return "same on both sides"
+    if hangs(box, scene):
+        return "floor"
     return None
 
 

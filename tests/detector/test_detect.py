@@ -181,3 +181,18 @@ def test_the_detector_needs_neither_simulator_nor_mission() -> None:
 def test_a_cupboard_before_the_wall_casts_a_shadow_and_no_door() -> None:
     cupboard = Box((3.0, 1.0, 0.4), (0.45, 1.0, 0.25), (0.7, 0.6, 0.5))
     assert detect_doors(make_room(Layout(extra=[cupboard]), step_deg=STEP_DEG), COARSE)[0].doors == ()
+
+
+@pytest.mark.parametrize(("gap", "count"), [(0.0, 1), (0.1, 0)])
+def test_a_panel_that_hangs_a_hand_above_the_floor_is_no_door(gap: float, count: int) -> None:
+    # 0.9 m wide, 1.9 m high and 2 cm thick; a leaf on a rail where it reaches the floor, a mirror where it does not
+    panel = Box((3.0, gap + 0.95, 0.01), (0.45, 0.95, 0.01), (0.3, 0.4, 0.6))
+    doors = detect_doors(make_room(Layout(extra=[panel]), step_deg=STEP_DEG), COARSE)[0].doors
+    assert len(doors) == count
+
+
+def test_two_doors_with_a_pillar_of_wall_between_are_two() -> None:
+    specs = [DoorSpec(left=2.0, width=0.85, frame=0.04), DoorSpec(left=3.05, width=0.85, frame=0.04)]
+    result = detect_doors(make_room(Layout(doors=specs), step_deg=STEP_DEG), COARSE)[0]
+    assert [d.kind for d in result.doors] == ["single", "single"]
+    assert min(min(quality(result, spec)) for spec in specs) > 0.9
