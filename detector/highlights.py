@@ -90,7 +90,7 @@ def _intensity(colour: Image, known: Mask) -> NDArray[np.float32]:
         return np.zeros(known.shape, np.float32)
     grey = nearest(cv2.transform(colour, np.full((1, 3), 1 / 3, np.float32)), known).astype(np.float32) / 255
     closed = cv2.morphologyEx(grey, cv2.MORPH_CLOSE, np.ones((LINE_PX, LINE_PX), np.uint8))
-    return cv2.GaussianBlur(closed, (0, 0), SMOOTHING_PX)
+    return np.asarray(cv2.GaussianBlur(closed, (0, 0), SMOOTHING_PX), np.float32)
 
 
 def region_of_interest(

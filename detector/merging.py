@@ -101,7 +101,7 @@ def merge(
     shape = images[0].depth.shape
     depth = np.full(shape, np.nan, np.float32)
     total, colour = np.zeros(shape, np.float32), np.zeros((*shape, 3), np.float32)
-    contour = np.zeros(shape, np.uint8)
+    contour = np.zeros(shape, bool)
     angles = [incidence(image, camera, height)[0] for image, camera in zip(images, cameras, strict=True)]
     colours = [(h.inpainted, h.regions) for h in highlights]
     if parameters.correct_highlights and len(images) > 1:
@@ -112,10 +112,10 @@ def merge(
         weight = np.where(image.coloured, np.maximum(view_weights(angle, guessed, parameters), 1e-12), 0)
         total += weight
         colour += weight[..., None] * seen
-        contour |= cv2.morphologyEx(guessed.astype(np.uint8), cv2.MORPH_GRADIENT, np.ones((5, 5), np.uint8))
+        contour |= cv2.morphologyEx(guessed.astype(np.uint8), cv2.MORPH_GRADIENT, np.ones((5, 5), np.uint8)) > 0
     coloured = total > 0
     merged = colour / np.where(coloured, total, 1)[..., None]
     if contour.any():
         smooth = cv2.blur(merged, (CONTOUR_FILTER, CONTOUR_FILTER))
-        merged = np.where((contour > 0)[..., None] & coloured[..., None], smooth, merged)
+        merged = np.where(contour[..., None] & coloured[..., None], smooth, merged)
     return Orthoimage(np.rint(merged).astype(np.uint8), coloured, depth, images[0].pixel_size)
