@@ -28,7 +28,7 @@ SLOPE_NOISE = 8.0
 FLAT = 0.1
 """Slope along u up to which a surface counts as parallel to the wall: 6 deg."""
 SLOPE_OUTLIER = 4.5
-"""Slopes up to this many times the median are noise where that is more: three sigma."""
+"""Slopes up to this many times their median noise are none where that is more: three sigma."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,11 +152,16 @@ def wall_face(view: Orthoimage, parameters: DetectorParameters) -> Mask:
 def _flatness(slope: NDArray[np.float32], wall: Mask, pixel_size: float) -> float:
     """Change per pixel up to which a surface is flat; a dark wall gives noisy ranges, and slopes that are no slopes.
 
+    Noise changes down the rows, which the slope of a leaf does not.
+
     Args:
-        wall: (H, W) pixels that mostly lie in the wall's plane.
+        wall: (H, W) pixels to measure the noise on.
     """
-    noise = float(np.median(np.abs(slope[wall]))) if wall.any() else 0.0
-    return max(FLAT * pixel_size, SLOPE_OUTLIER * noise)
+    apart = _odd(ALONG, pixel_size)  # rows that were not smoothed over the same pixels
+    both = wall[apart:] & wall[:-apart]
+    change = np.abs(slope[apart:] - slope[:-apart])[both]
+    noise = float(np.median(change)) / np.sqrt(2) if len(change) else 0.0
+    return float(max(FLAT * pixel_size, SLOPE_OUTLIER * noise))
 
 
 def _local_slope(dx: NDArray[np.float32], pixel_size: float) -> NDArray[np.float32]:

@@ -1,0 +1,37 @@
+"""Where a view shows the wall's face: 2 x 1 m of wall in samples of 30 mm."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from detector.edges import wall_face
+from detector.parameters import DetectorParameters
+from detector.result import Orthoimage
+from tests.detector.conftest import plain_image
+
+PARAMETERS = DetectorParameters()
+
+
+def noisy(std: float, slope_deg: float = 0.0) -> Orthoimage:
+    """A wall whose right half is a leaf of some slope, with noise [m]."""
+    image = plain_image((198, 402), pixel_size=0.005)
+    samples = np.random.default_rng(0).normal(0, std, (33, 67))
+    noise = cv2.resize(samples, (402, 198), interpolation=cv2.INTER_LINEAR)
+    leaf = np.maximum(np.arange(402) - 200, 0) * 0.005 * np.tan(np.deg2rad(slope_deg))
+    return replace(image, depth=(noise + leaf).astype(np.float32))
+
+
+@pytest.mark.parametrize("std", [0.001, 0.003, 0.006])
+def test_a_plain_wall_is_face_however_dark_it_is(std: float) -> None:
+    assert wall_face(noisy(std), PARAMETERS).mean() > 0.97
+
+
+@pytest.mark.parametrize("std", [0.001, 0.003, 0.006])
+def test_a_leaf_that_stands_open_is_no_face(std: float) -> None:
+    # at 25 deg the leaf is 4.5 cm off the wall's plane after 10 cm, that is after 20 of its columns
+    face = wall_face(noisy(std, 25.0), PARAMETERS)
+    assert face[:, :190].mean() > 0.97 and face[:, 222:].mean() < 0.03
