@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -41,7 +44,8 @@ def detect_doors(room: Room, parameters: DetectorParameters | None = None) -> li
     parameters = parameters or DetectorParameters()
     if not room.views:
         raise DetectorError("Room.views: expected at least one view, got none")
-    return [detect_wall(room, wall, parameters) for wall in room.walls]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:  # walls share nothing, and their order is kept
+        return list(pool.map(partial(detect_wall, room, parameters=parameters), room.walls))
 
 
 def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallResult:
