@@ -74,13 +74,17 @@ def matt_colours(
             here, there = (c.reshape(-1, 3)[some].mean(axis=1) for c in (own, other.colour[box]))
             matched = cv2.convertScaleAbs(other.colour[box], alpha=float(np.median(here / np.maximum(there, 1))))
             # of several, the brightest: one that is too dark by mistake takes nothing out
-            np.maximum(matt, matched, out=matt, where=sees[..., None])
+            matched *= sees[..., None]
+            matt = np.maximum(matt, matched)
             told |= sees
         if not told.any():
             continue
-        gloss = cv2.subtract(own[told], matt[told]).min(axis=1)
-        own_part = kept[gloss][:, None]
-        colour[box][told] = np.rint(own_part * own[told] + (1 - own_part) * matt[told])
+        red, green, blue = cv2.split(cv2.subtract(own, matt))  # not below 0
+        gloss = np.minimum(np.minimum(red, green), blue)
+        filled = cv2.dilate(found.regions[box].astype(np.uint8), np.ones((5, 5), np.uint8)) > 0  # and its border
+        changed = told & ((gloss > 2) | filled)
+        own_part = kept[gloss[changed]][:, None]
+        colour[box][changed] = np.rint(own_part * own[changed] + (1 - own_part) * matt[changed])
         guessed[box] &= ~told
     return result
 
