@@ -100,11 +100,11 @@ def test_a_hole_has_depth_edges_and_a_shadow_has_none() -> None:
 
 
 def test_a_sloping_leaf_has_an_edge_at_its_hinge_and_none_on_its_face() -> None:
-    image = plain_image((100, 200), pixel_size=0.005)
-    image.depth[:, 50:] = (np.arange(150) * 0.005 * np.tan(np.deg2rad(20)))[None]
-    seen = np.full((100, 200), Visibility.DATA, np.uint8)
+    image = plain_image((100, 600), pixel_size=0.005)
+    image.depth[:, 450:] = (np.arange(150) * 0.005 * np.tan(np.deg2rad(20)))[None]
+    seen = np.full((100, 600), Visibility.DATA, np.uint8)
     edges = np.flatnonzero(depth_edges(image.depth, seen, 0.005, PARAMETERS).edges[50])
-    assert len(edges) and (np.abs(edges - 50) <= 2).all()
+    assert len(edges) and (np.abs(edges - 450) <= 2).all()
 
 
 def test_edges_know_the_direction_of_the_side_that_they_can_belong_to() -> None:
