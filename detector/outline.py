@@ -14,6 +14,12 @@ ABSENT = 0.7
 """Share of a side's length over which the wall's face must be missing inside a hole, and present outside."""
 CLEAR = 0.1
 """Corners that are left out of the profiles [m]."""
+FRAME = 0.12
+"""Widest frame that an outline may have taken in [m]."""
+BEHIND_FRAME = 0.03
+"""Nothing of the wall's face is seen over this width inside a frame [m]."""
+OPEN_SHARE = 0.5
+"""A doorway in which less than this share is in the wall's face has an open or a recessed leaf."""
 BORDER_PX = 3
 """Pixels next to the edge that must be hole on one side and face on the other."""
 
@@ -40,10 +46,14 @@ def _settled(rectangle: Rectangle, passed: Mask, face: Mask, height: float, pixe
     columns = np.s_[int((rectangle.left + CLEAR) / pixel_size) : int((rectangle.right - CLEAR) / pixel_size)]
     hole, wall = (m[rows].mean(axis=0) for m in (passed, face))
     reach, count = round(REACH / pixel_size), len(hole)
-    left = _edge(hole, wall, rectangle.left / pixel_size, reach)
-    right = count - _edge(hole[::-1], wall[::-1], count - rectangle.right / pixel_size, reach)
+    frame = round(FRAME / pixel_size) if face[rows, columns].mean() < OPEN_SHARE else 0
+    inside = max(1, round(BEHIND_FRAME / pixel_size))
+    left = _without_frame(wall, _edge(hole, wall, rectangle.left / pixel_size, reach), frame, inside)
+    right = _edge(hole[::-1], wall[::-1], count - rectangle.right / pixel_size, reach)
+    right = count - _without_frame(wall[::-1], right, frame, inside)
     hole, wall = (m[:, columns].mean(axis=1) for m in (passed, face))
     top = _edge(hole, wall, (height - rectangle.top) / pixel_size, reach)
+    top = _without_frame(wall, top, frame, inside)
     return Rectangle(left * pixel_size, rectangle.bottom, right * pixel_size, height - top * pixel_size)
 
 
@@ -61,3 +71,21 @@ def _edge(hole: NDArray, face: NDArray, position: float, reach: int) -> float:
         if inside.min() >= ABSENT and len(outside) and outside.min() >= ABSENT:
             return border - float(hole[border - 1])  # the pixel on the border is hole in part
     return position
+
+
+def _without_frame(face: NDArray, position: float, widest: int, inside: int) -> float:
+    """Where the face that goes on inwards from a position ends; the position itself if it does not go on or not end.
+
+    Args:
+        face: Share of each column or row that is the wall's face; the doorway at higher indices.
+        position: Where the side was found, in borders of pixels.
+        widest: How far the face may go on [px].
+        inside: Over how many pixels it must be absent beyond its end.
+    """
+    first = max(round(position) + 1, 0)  # the pixel on the border may be of either kind
+    absent = np.flatnonzero(face[first : first + widest] < ABSENT)
+    if len(absent) == 0 or absent[0] < BORDER_PX:
+        return position
+    end = first + int(absent[0])
+    beyond = face[end + 1 : end + 1 + inside]
+    return float(end) if len(beyond) == inside and beyond.max() < 1 - ABSENT else position
