@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.candidates import Scene
-from detector.result import Mask, Rectangle
+from detector.result import Mask, Orthoimage, Rectangle
 
 REACH = 0.05
 """How far from the found line the edge of the hole is looked for [m]."""
@@ -18,6 +18,10 @@ FRAME = 0.12
 """Widest frame that an outline may have taken in [m]."""
 BEHIND_FRAME = 0.03
 """Nothing of the wall's face is seen over this width inside a frame [m]."""
+ONE_FACE = 0.015
+"""Depths of a frame's face differ by less [m]: five sigma."""
+STANDS_OUT = 0.03
+"""A frame's face lies this close to the wall's [m]; a leaf that is nearer to the room is none."""
 OPEN_SHARE = 0.5
 """A doorway in which less than this share is in the wall's face has an open or a recessed leaf."""
 BORDER_PX = 3
@@ -35,11 +39,12 @@ def settle_sides(rectangles: tuple[Rectangle, ...], passed: Mask, scene: Scene, 
         height: Height of the wall [m].
     """
     face = scene.face & ~passed
-    return tuple(_settled(r, passed, face, height, scene.merged.pixel_size) for r in rectangles)
+    return tuple(_settled(r, passed, face, scene.merged, height) for r in rectangles)
 
 
-def _settled(rectangle: Rectangle, passed: Mask, face: Mask, height: float, pixel_size: float) -> Rectangle:
+def _settled(rectangle: Rectangle, passed: Mask, face: Mask, merged: Orthoimage, height: float) -> Rectangle:
     """One rectangle with its left, right and top side settled."""
+    pixel_size = merged.pixel_size
     rows = np.s_[
         int((height - rectangle.top + CLEAR) / pixel_size) : int((height - rectangle.bottom - CLEAR) / pixel_size)
     ]
@@ -48,12 +53,13 @@ def _settled(rectangle: Rectangle, passed: Mask, face: Mask, height: float, pixe
     reach, count = round(REACH / pixel_size), len(hole)
     frame = round(FRAME / pixel_size) if face[rows, columns].mean() < OPEN_SHARE else 0
     inside = max(1, round(BEHIND_FRAME / pixel_size))
-    left = _without_frame(wall, _edge(hole, wall, rectangle.left / pixel_size, reach), frame, inside)
+    depth = _medians(merged.depth[rows], 0)
+    left = _without_frame(wall, depth, _edge(hole, wall, rectangle.left / pixel_size, reach), frame, inside)
     right = _edge(hole[::-1], wall[::-1], count - rectangle.right / pixel_size, reach)
-    right = count - _without_frame(wall[::-1], right, frame, inside)
+    right = count - _without_frame(wall[::-1], depth[::-1], right, frame, inside)
     hole, wall = (m[:, columns].mean(axis=1) for m in (passed, face))
     top = _edge(hole, wall, (height - rectangle.top) / pixel_size, reach)
-    top = _without_frame(wall, top, frame, inside)
+    top = _without_frame(wall, _medians(merged.depth[:, columns], 1), top, frame, inside)
     return Rectangle(left * pixel_size, rectangle.bottom, right * pixel_size, height - top * pixel_size)
 
 
@@ -73,11 +79,21 @@ def _edge(hole: NDArray, face: NDArray, position: float, reach: int) -> float:
     return position
 
 
-def _without_frame(face: NDArray, position: float, widest: int, inside: int) -> float:
+def _medians(depth: NDArray[np.float32], axis: int) -> NDArray[np.float32]:
+    """Median of each column (axis 0) or row (axis 1); NaN where there is no data."""
+    result = np.full(depth.shape[1 - axis], np.nan, np.float32)
+    known = np.isfinite(depth).any(axis=axis)
+    if known.any():
+        result[known] = np.nanmedian(depth[:, known] if axis == 0 else depth[known], axis=axis)
+    return result
+
+
+def _without_frame(face: NDArray, depth: NDArray, position: float, widest: int, inside: int) -> float:
     """Where the face that goes on inwards from a position ends; the position itself if it does not go on or not end.
 
     Args:
         face: Share of each column or row that is the wall's face; the doorway at higher indices.
+        depth: Of each column or row [m]; a leaf seen at a grazing angle is face in steps, but not of one depth.
         position: Where the side was found, in borders of pixels.
         widest: How far the face may go on [px].
         inside: Over how many pixels it must be absent beyond its end.
@@ -88,4 +104,6 @@ def _without_frame(face: NDArray, position: float, widest: int, inside: int) -> 
         return position
     end = first + int(absent[0])
     beyond = face[end + 1 : end + 1 + inside]
-    return float(end) if len(beyond) == inside and beyond.max() < 1 - ABSENT else position
+    frame = depth[first : end - 1]
+    is_frame = np.ptp(frame) < ONE_FACE and np.abs(frame).max() < STANDS_OUT  # False for NaN
+    return float(end) if is_frame and len(beyond) == inside and beyond.max() < 1 - ABSENT else position
