@@ -88,11 +88,12 @@ def judge(
     wall, visible, through = inner_shares(boxes, scene)
     around = surroundings(boxes, scene)
     alone = _stand_alone(boxes, support, feet, scene)
+    least_visible = np.where(through < OPEN_SHARE, parameters.min_visible_closed, parameters.min_visible)
     reasons = np.full(len(boxes), None, object)
     checks = (
         ("door frame occlusion", support.min(axis=1) < parameters.alpha2),
         ("location consistency", (wall > parameters.alpha3) & ~alone),
-        ("panel occlusion", visible < parameters.min_visible),
+        ("panel occlusion", visible < least_visible),
         ("floor", feet.min(axis=1) < FOOT_SUPPORT),
         ("surroundings", around.min(axis=1) < FAIRLY_SET),
     )
