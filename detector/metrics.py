@@ -29,6 +29,11 @@ class Overlap:
         return _ratio(self.true_positive, self.false_negative + self.true_positive)
 
     @property
+    def iou(self) -> float:
+        """Intersection over union; 0 for two empty rectangles."""
+        return _ratio(self.true_positive, self.true_positive + self.false_positive + self.false_negative)
+
+    @property
     def absolute_error(self) -> float:
         """e_abs [m2], equation 8."""
         return self.false_positive + self.false_negative

@@ -171,8 +171,7 @@ def _shared(wall: Wall, door: Door, truth: DoorTruth) -> float:
     rectangle = _rectangle_on(wall, truth)
     if rectangle is None:
         return 0.0
-    areas = overlap(door.rectangle, rectangle)
-    return areas.true_positive / (areas.true_positive + areas.false_positive + areas.false_negative)
+    return overlap(door.rectangle, rectangle).iou
 
 
 def _leaf_corners(wall: Wall, doorway: Rectangle, leaf: Leaf, *, number: int, count: int) -> NDArray[np.float64]:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from mission.rigid import Pose
+
 if TYPE_CHECKING:  # events are plain data: making one must not import mujoco, open3d or sklearn
     from detector.result import WallResult
     from detector.room import View
@@ -25,9 +27,6 @@ if TYPE_CHECKING:  # events are plain data: making one must not import mujoco, o
     from sim.hokuyo import LaserScan
     from sim.robot import RobotShape
     from sim.scanner import Scan
-
-Pose = NDArray[np.float64]
-"""(4, 4) rigid transform, right-handed, z up, [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-_VISUAL_GROUPS = 3
-"""MuJoCo's viewers show geom groups 0 to 2 unless told otherwise; the rest is for collisions only."""
+from sim.render.visibility import VISUAL_GROUPS
+
 _IGNORED_GROUP = 5
 _KEPT_GROUPS = np.array([1, 1, 1, 1, 1, 0], np.uint8)
 
@@ -47,7 +47,7 @@ class Rays:
         self._data = data
         ghosts = (model.geom_contype == 0) & (model.geom_conaffinity == 0)
         if not only_solid:
-            ghosts &= model.geom_group >= _VISUAL_GROUPS
+            ghosts &= model.geom_group >= VISUAL_GROUPS
         ignored = ghosts | np.isin(model.geom_bodyid, sorted(ignored_bodies))
         self._model = copy.copy(model)  # whose groups say what to ignore; the caller's model stays as it is
         self._model.geom_group[:] = np.where(ignored, _IGNORED_GROUP, np.minimum(model.geom_group, _IGNORED_GROUP - 1))

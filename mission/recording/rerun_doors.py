@@ -13,12 +13,12 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from mission.evaluation import DoorEvaluation
-from mission.events import DoorsEvaluated, Drove, Event, MissionStarted, Photographed, Pose, Registered
+from mission.events import DoorsEvaluated, Drove, Event, MissionStarted, Photographed, Registered
 from mission.recording import entities
 from mission.recording.drawing import TRUTH_COLOUR, angle_label, closed, jpeg, palette, quads, shrink
 from mission.recording.entities import child
 from mission.recording.rerun_world import log_pose
-from mission.rigid import inverted
+from mission.rigid import Pose, inverted
 
 if TYPE_CHECKING:
     from sim.camera import Photo

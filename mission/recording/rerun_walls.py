@@ -154,15 +154,9 @@ def shown_candidates(candidates: Sequence[Candidate]) -> list[Candidate]:
     for candidate in rejected:
         if len(shown) == SHOWN_CANDIDATES:
             break
-        if all(_overlap(candidate.rectangle, other.rectangle) < SAME for other in shown):
+        if all(overlap(candidate.rectangle, other.rectangle).iou < SAME for other in shown):
             shown.append(candidate)
     return [*shown, *accepted]
-
-
-def _overlap(a: Rectangle, b: Rectangle) -> float:
-    """Intersection over union."""
-    areas = overlap(a, b)
-    return areas.true_positive / (areas.true_positive + areas.false_positive + areas.false_negative)
 
 
 def _widened(edges: NDArray[np.bool_]) -> NDArray[np.bool_]:
