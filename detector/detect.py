@@ -72,7 +72,7 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         area = find_wall_area(merged, parameters)
     with clock("doors"):
         search, scene = find_doors(merged, seen, look.face, area, (wall.height, floor), parameters)
-        rectangles = settle_sides(doorway_rectangles(search), look.passed, scene, wall.height)
+        rectangles = settle_sides(doorway_rectangles(search), look.passed, scene, wall.height, parameters)
     with clock("angles"):
         doors = [describe_door(r, merged, seen, look.around, wall.height, parameters) for r in rectangles]
     return WallResult(

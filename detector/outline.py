@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.candidates import Scene
+from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, Rectangle
+from detector.subpixel import components, edge_centre
 
 REACH = 0.05
 """How far from the found line the edge of the hole is looked for [m]."""
@@ -28,8 +30,10 @@ BORDER_PX = 3
 """Pixels next to the edge that must be hole on one side and face on the other."""
 
 
-def settle_sides(rectangles: tuple[Rectangle, ...], passed: Mask, scene: Scene, height: float) -> tuple[Rectangle, ...]:
-    """Sides moved to the border between the wall's face and the hole in it, where the two meet.
+def settle_sides(
+    rectangles: tuple[Rectangle, ...], passed: Mask, scene: Scene, height: float, parameters: DetectorParameters
+) -> tuple[Rectangle, ...]:
+    """Sides moved to the border between the wall's face and the hole in it, or else to the edge's own centre.
 
     Door stops and the far edge of the reveal make lines within the doorway; a leaf that is open or deep in the reveal
     fills, once closed, the whole hole. A leaf flush with the wall has no hole, and keeps its own outline.
@@ -38,12 +42,25 @@ def settle_sides(rectangles: tuple[Rectangle, ...], passed: Mask, scene: Scene, 
         passed: (H, W) where beams crossed the wall's face.
         height: Height of the wall [m].
     """
-    face = scene.face & ~passed
-    return tuple(_settled(r, passed, face, scene.merged, height) for r in rectangles)
+    if not parameters.settle_sides or not rectangles:
+        return rectangles
+    face, values = scene.face & ~passed, components(scene.merged, parameters)
+    return tuple(_settled(r, passed, face, values, scene.merged, height) for r in rectangles)
 
 
-def _settled(rectangle: Rectangle, passed: Mask, face: Mask, merged: Orthoimage, height: float) -> Rectangle:
-    """One rectangle with its left, right and top side settled."""
+def _settled(
+    rectangle: Rectangle,
+    passed: Mask,
+    face: Mask,
+    values: NDArray[np.float32],
+    merged: Orthoimage,
+    height: float,
+) -> Rectangle:
+    """One rectangle with its left, right and top side settled.
+
+    Args:
+        values: (H, W, 4) from `components`.
+    """
     pixel_size = merged.pixel_size
     rows = np.s_[
         int((height - rectangle.top + CLEAR) / pixel_size) : int((height - rectangle.bottom - CLEAR) / pixel_size)
@@ -51,20 +68,25 @@ def _settled(rectangle: Rectangle, passed: Mask, face: Mask, merged: Orthoimage,
     columns = np.s_[int((rectangle.left + CLEAR) / pixel_size) : int((rectangle.right - CLEAR) / pixel_size)]
     hole, wall = (m[rows].mean(axis=0) for m in (passed, face))
     reach, count = round(REACH / pixel_size), len(hole)
+    sides = rectangle.left / pixel_size, rectangle.right / pixel_size, (height - rectangle.top) / pixel_size
+    centres = [
+        edge_centre(band, axis, side, pixel_size)
+        for band, axis, side in zip((values[rows], values[rows], values[:, columns]), (1, 1, 0), sides, strict=True)
+    ]
     frame = round(FRAME / pixel_size) if face[rows, columns].mean() < OPEN_SHARE else 0
     inside = max(1, round(BEHIND_FRAME / pixel_size))
     depth = _medians(merged.depth[rows], 0)
-    left = _without_frame(wall, depth, _edge(hole, wall, rectangle.left / pixel_size, reach), frame, inside)
-    right = _edge(hole[::-1], wall[::-1], count - rectangle.right / pixel_size, reach)
+    left = _without_frame(wall, depth, _edge(hole, wall, sides[0], reach, centres[0]), frame, inside)
+    right = _edge(hole[::-1], wall[::-1], count - sides[1], reach, count - centres[1])
     right = count - _without_frame(wall[::-1], depth[::-1], right, frame, inside)
     hole, wall = (m[:, columns].mean(axis=1) for m in (passed, face))
-    top = _edge(hole, wall, (height - rectangle.top) / pixel_size, reach)
+    top = _edge(hole, wall, sides[2], reach, centres[2])
     top = _without_frame(wall, _medians(merged.depth[:, columns], 1), top, frame, inside)
     return Rectangle(left * pixel_size, rectangle.bottom, right * pixel_size, height - top * pixel_size)
 
 
-def _edge(hole: NDArray, face: NDArray, position: float, reach: int) -> float:
-    """First border where the face ends and the hole begins, near a position; the position itself if there is none.
+def _edge(hole: NDArray, face: NDArray, position: float, reach: int, otherwise: float) -> float:
+    """First border where the face ends and the hole begins, near a position; `otherwise` if there is none.
 
     Args:
         hole, face: Share of each column or row that is looked through, and that is wall; the hole at higher indices.
@@ -75,8 +97,9 @@ def _edge(hole: NDArray, face: NDArray, position: float, reach: int) -> float:
     for border in borders:
         inside, outside = hole[border : border + BORDER_PX], face[border - 1 - BORDER_PX : border - 1]
         if inside.min() >= ABSENT and len(outside) and outside.min() >= ABSENT:
-            return border - float(hole[border - 1])  # the pixel on the border is hole in part
-    return position
+            # a beam passed somewhere in the outermost pixel; before it, one may be hole in part of the rows
+            return border + 0.5 - float(hole[border - 1])
+    return otherwise
 
 
 def _medians(depth: NDArray[np.float32], axis: int) -> NDArray[np.float32]:

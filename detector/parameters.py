@@ -83,6 +83,10 @@ class DetectorParameters(BaseModel):
     )
     max_protrusion: float = Field(0.06, ge=0, description="a closed leaf stands out no further than this [m]; ours")
 
+    settle_sides: bool = Field(
+        True, description="False leaves the sides on the lines of section 6.2, whole pixels; True moves them, ours"
+    )
+
     # Section 6.3: opening angle
     leaf_slice: Literal["all", "half-height"] = Field(
         "all", description="points for the angle: the whole leaf, or a slice at half height as in section 6.3"

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from detector.outline import _settled
-from detector.result import Mask, Rectangle
+from detector.parameters import DetectorParameters
+from detector.result import Mask, Orthoimage, Rectangle
+from detector.subpixel import components, edge_centre
 from tests.detector.conftest import plain_image
 
 DOORWAY = Rectangle(1.0, 0.0, 1.9, 2.0)
@@ -23,18 +25,23 @@ def hole() -> Mask:
     return mask
 
 
+def settle(found: Rectangle, passed: Mask, face: Mask, wall: Orthoimage = WALL) -> Rectangle:
+    """The rectangle with its sides settled on a wall of one colour."""
+    return _settled(found, passed, face, components(wall, DetectorParameters()), wall, HEIGHT)
+
+
 @pytest.mark.parametrize("looked_through", [True, False])
 def test_a_frame_that_was_taken_in_is_left_out(looked_through: bool) -> None:
     # the line was found on the outside of a frame of 8 cm; what stands in the doorway is no face of the wall
     passed = hole() & looked_through
     found = Rectangle(0.92, 0.0, 1.9, 2.0)
-    settled = _settled(found, passed, ~hole(), WALL, HEIGHT)
+    settled = settle(found, passed, ~hole())
     assert (settled.left, settled.right, settled.top) == pytest.approx((1.0, 1.9, 2.0), abs=0.011)
 
 
 def test_a_closed_leaf_flush_with_its_frame_keeps_its_outline() -> None:
     face = np.ones((250, 300), bool)
-    settled = _settled(DOORWAY, np.zeros_like(face), face, WALL, HEIGHT)
+    settled = settle(DOORWAY, np.zeros_like(face), face)
     assert (settled.left, settled.right, settled.top) == pytest.approx((1.0, 1.9, 2.0), abs=1e-6)
 
 
@@ -43,7 +50,7 @@ def test_a_groove_in_a_frame_does_not_end_it() -> None:
     face = ~hole()
     face[:, 100:116] = True
     face[:, 105] = False
-    assert _settled(DOORWAY, np.zeros_like(face), face, WALL, HEIGHT).left == pytest.approx(1.0)
+    assert settle(DOORWAY, np.zeros_like(face), face).left == pytest.approx(1.0)
 
 
 def test_a_leaf_that_is_face_in_steps_at_its_hinge_is_no_frame() -> None:
@@ -52,5 +59,36 @@ def test_a_leaf_that_is_face_in_steps_at_its_hinge_is_no_frame() -> None:
     face[:, 100:108] = True
     depth = np.zeros_like(WALL.depth)
     depth[:, 100:190] = np.arange(90) * 0.01 * np.tan(np.deg2rad(35))
-    settled = _settled(DOORWAY, np.zeros_like(face), face, replace(WALL, depth=depth), HEIGHT)
+    settled = settle(DOORWAY, np.zeros_like(face), face, replace(WALL, depth=depth))
     assert settled.left == pytest.approx(1.0)
+
+
+def test_the_side_of_a_hole_lies_within_the_outermost_pixel_that_a_beam_passed() -> None:
+    # on average in its middle: half a pixel of 1 cm inside the first border
+    settled = settle(DOORWAY, hole(), ~hole())
+    assert (settled.left, settled.right, settled.top) == pytest.approx((1.005, 1.895, 1.995), abs=1e-6)
+
+
+@pytest.mark.parametrize("found", [0.985, 1.0, 1.015])
+def test_an_edge_between_pixels_is_found_between_them(found: float) -> None:
+    # leaf from u = 1.003: the pixel from 1.00 to 1.01 is three parts wall (200) and seven parts leaf (100): 130
+    colour = np.full((250, 300, 3), 200, np.uint8)
+    colour[:, 101:] = 100
+    colour[:, 100] = 130
+    values = components(replace(WALL, colour=colour), DetectorParameters())
+    # steps of 70 at 1.00 and 30 at 1.01: their centre is 1.003
+    assert edge_centre(values, 1, found / 0.01, 0.01) * 0.01 == pytest.approx(1.003, abs=0.001)
+
+
+def test_both_flanks_of_a_dark_gap_count() -> None:
+    # wall and leaf of one colour, a gap of 1 cm from 1.00 to 1.01
+    colour = np.full((250, 300, 3), 150, np.uint8)
+    colour[:, 100] = 40
+    values = components(replace(WALL, colour=colour), DetectorParameters())
+    for found in (1.0, 1.01):
+        assert edge_centre(values, 1, found / 0.01, 0.01) * 0.01 == pytest.approx(1.005, abs=1e-3)
+
+
+def test_without_an_edge_a_side_stays_where_it_is() -> None:
+    values = components(WALL, DetectorParameters())
+    assert edge_centre(values, 0, 123.4, 0.01) == 123.4
