@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import resource
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -26,6 +24,7 @@ from mission.events import (
     Registered,
     Structured,
 )
+from mission.memory import peak_memory
 from mission.rigid import angle_between
 
 SCHEMA = 1
@@ -159,12 +158,6 @@ def write_json(path: Path, content: Mapping[str, Any]) -> None:
     part = path.with_suffix(".part")
     part.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n")
     part.replace(path)
-
-
-def peak_memory() -> int:
-    """Largest resident set of this process so far [bytes]."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak if sys.platform == "darwin" else peak * 1024  # Linux counts KiB
 
 
 def _door(evaluation: DoorEvaluation) -> dict[str, Any]:

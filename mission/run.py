@@ -22,6 +22,7 @@ from mission.config import read_config
 from mission.errors import MissionError, UsageError
 from mission.events import Event
 from mission.interrupts import Interrupts
+from mission.memory import release_freed_memory
 from mission.mission import Mission
 from mission.progress import TerminalProgress
 from mission.report import Report, write_json
@@ -145,6 +146,7 @@ def _hand_out(event: Event, sinks: Iterable[Sink], stopwatch: Stopwatch) -> None
     with stopwatch("recording"):
         for sink in sinks:
             sink.handle(event)
+    release_freed_memory()
 
 
 def find_scene(scene: str) -> Path:
