@@ -15,6 +15,7 @@ from mission.localisation import readings_in_base
 
 if TYPE_CHECKING:
     from sim.hokuyo import LaserScan
+    from sim.robot import RobotParameters
 
 
 Outcome = Literal["arrived", "blocked", "stuck", "contact"]
@@ -29,6 +30,10 @@ STANDING = 1e-3
 
 class DrivenRobot(Protocol):
     """What driving needs of a robot."""
+
+    @property
+    def parameters(self) -> RobotParameters:
+        """Its limits of speed and acceleration."""
 
     @property
     def time(self) -> float:
@@ -117,11 +122,12 @@ def _advance(
         held &= touched
         if touched - held or (held and robot.time - began > parameters.release):
             return "contact", f"touched {', '.join(sorted(touched))}"
-        wanted = follow_path(path, pose, target=command.target, parameters=parameters)
+        wanted = follow_path(path, pose, target=command.target, robot=robot.parameters, parameters=parameters)
         if wanted.target == len(path):
             return "arrived", "reached the end of the path"
         obstacles = readings_in_base(scans)
-        allowed = restrained(eased(wanted, command, parameters), obstacles, footprint=footprint, parameters=parameters)
+        next_command = eased(wanted, command, robot=robot.parameters, parameters=parameters)
+        allowed = restrained(next_command, obstacles, footprint=footprint, parameters=parameters)
         if allowed is None:
             gap = gap_to_body(obstacles, footprint).min()
             return "blocked", f"an obstacle {gap:.2f} m from the body is in the way"

@@ -41,11 +41,11 @@ class ExploredRoom:
         Raises:
             MissionError: There is no floor or no wall.
         """
-        return find_structure(self.samples, self.config.structure)
+        return find_structure(self.samples, self.config.structure, scanner=self.config.scanner)
 
     def voxels(self, structure: Structure) -> VoxelModel:
         """The labelled voxels of the structure."""
-        return label_voxels(structure, self.samples, self.config.voxels)
+        return label_voxels(structure, self.samples, self.config.voxels, scanner=self.config.scanner)
 
     def laser_map(self, height: float) -> LaserMap:
         """What the Hokuyos should see at their height over the floor [m]."""
@@ -61,6 +61,7 @@ class ExploredRoom:
             lasers=self.lasers,
             robot_poses=self.robot_poses,
             footprint=self.footprint,
+            scanner=self.config.scanner,
             parameters=self.config.navigation.grid,
         )
 
@@ -85,6 +86,7 @@ class ExploredRoom:
             floor_height=structure.floor_height,
             room=structure.polygon,
             footprint=self.footprint,
+            scanner=self.config.scanner,
             navigation=self.config.navigation,
             parameters=self.config.planning,
         )

@@ -9,16 +9,17 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from mission.grid import Footprint
+from sim.robot import RobotParameters
 
 
 class DrivingParameters(BaseModel):
-    """How fast, how exactly and how carefully the robot follows its path."""
+    """How exactly and how carefully the robot follows its path; how fast is the robot's own limit."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    max_speed: float = Field(default=0.3, gt=0.0, le=1.5, description="[m/s]; Guardian's navigation drives 0.1-0.3")
-    max_turn_rate: float = Field(default=0.7, gt=0.0, le=2.0, description="[rad/s]; Guardian's limit")
-    acceleration: float = Field(default=0.3, gt=0.0, le=2.0, description="[m/s2], for braking too; Guardian can do 0.5")
+    acceleration: float = Field(
+        default=0.3, gt=0.0, le=2.0, description="[m/s2], for braking too; at most what the robot can do"
+    )
     heading_gain: float = Field(default=2.0, gt=0.0, le=10.0, description="Turn rate per heading error [1/s]")
     aligned: float = Field(
         default=0.17, gt=0.0, le=1.0, description="Heading error at which driving gives way to turning [rad]"
@@ -68,6 +69,7 @@ def follow_path(
     world_from_base: NDArray[np.float64],
     *,
     target: int = 1,
+    robot: RobotParameters | None = None,
     parameters: DrivingParameters | None = None,
 ) -> Command:
     """Decide the next command: turn towards the way point, then drive to it, then on to the next.
@@ -78,8 +80,9 @@ def follow_path(
         path: (P, 2) way points in the world [m], the start among them.
         world_from_base: (4, 4) present pose.
         target: Way point headed for so far, from the last command.
+        robot: What is driven: its limits of speed.
     """
-    parameters = parameters or DrivingParameters()
+    parameters, robot = parameters or DrivingParameters(), robot or RobotParameters()
     position, ahead = world_from_base[:2, 3], world_from_base[:2, 0]
     heading = float(np.arctan2(ahead[1], ahead[0]))
     while target < len(path):
@@ -93,9 +96,10 @@ def follow_path(
     reverse = abs(error) > np.pi - parameters.backwards
     if reverse:
         error = _wrapped(error + np.pi)
-    turn_rate = float(np.clip(parameters.heading_gain * error, -parameters.max_turn_rate, parameters.max_turn_rate))
-    braking = float(np.sqrt(2 * parameters.acceleration * max(distance - parameters.tolerance, 0.0)))
-    speed = min(parameters.max_speed, max(braking, parameters.tolerance / 1.0)) * max(
+    turn_rate = float(np.clip(parameters.heading_gain * error, -robot.max_turn_rate, robot.max_turn_rate))
+    acceleration = min(parameters.acceleration, robot.max_acceleration)
+    braking = float(np.sqrt(2 * acceleration * max(distance - parameters.tolerance, 0.0)))
+    speed = min(robot.max_speed, max(braking, parameters.tolerance / 1.0)) * max(
         0.0, 1.0 - abs(error) / parameters.aligned
     )
     return Command(-speed if reverse else speed, turn_rate, target)
@@ -146,9 +150,9 @@ def _towards(point: NDArray[np.float64], position: NDArray[np.float64], heading:
     return float(np.hypot(*offset)), _wrapped(float(np.arctan2(offset[1], offset[0])) - heading)
 
 
-def eased(wanted: Command, last: Command, parameters: DrivingParameters) -> Command:
+def eased(wanted: Command, last: Command, *, robot: RobotParameters, parameters: DrivingParameters) -> Command:
     """The wanted command, its speed no more than one tick's acceleration away from the last one's."""
-    change = parameters.acceleration * parameters.tick
+    change = min(parameters.acceleration, robot.max_acceleration) * parameters.tick
     return Command(
         float(np.clip(wanted.speed, last.speed - change, last.speed + change)), wanted.turn_rate, wanted.target
     )

@@ -21,6 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from sim.scanner import ScannerParameters
+
 if TYPE_CHECKING:
     from sim.hokuyo import LaserScan
 
@@ -60,8 +62,6 @@ class GridParameters(BaseModel):
         le=4.0,
         description="Hokuyo beams clear cells up to here [m]: just past the scanner's blind disc",
     )
-    lowest_elevation_deg: float = Field(default=-40.0, gt=-90.0, lt=0.0, description="VZ-400: zenith angle 130 deg")
-    min_range: float = Field(default=1.5, ge=0.0, le=5.0, description="VZ-400 [m]")
 
 
 @dataclass(frozen=True)
@@ -147,6 +147,7 @@ def grid_from_scans(
     footprint: Footprint,
     lasers: Sequence[tuple[LaserScan, NDArray[np.float64]]] = (),
     robot_poses: Sequence[NDArray[np.float64]] = (),
+    scanner: ScannerParameters | None = None,
     parameters: GridParameters | None = None,
 ) -> OccupancyGrid:
     """Map the floor from all that was measured so far.
@@ -160,8 +161,9 @@ def grid_from_scans(
         footprint: What the robot covers where it has stood.
         lasers: Hokuyo scans, each with the (4, 4) world_from_base at which it was taken.
         robot_poses: (4, 4) world_from_base at which the robot has stood.
+        scanner: What took the scans: its field of view and minimum range leave a disc around it blind.
     """
-    parameters = parameters or GridParameters()
+    parameters, scanner = parameters or GridParameters(), scanner or ScannerParameters()
     points = _within_reach(np.asarray(points_in_world), scanners_in_world, floor_height, parameters)
     grid = _empty_grid(points, scanners_in_world, parameters)
     height = points[:, 2] - floor_height
@@ -175,8 +177,8 @@ def grid_from_scans(
     for scan, world_from_base in lasers:
         grid = with_laser(grid, scan, world_from_base, parameters=parameters)
     cells = grid.cells.copy()
-    for scanner in np.asarray(scanners_in_world, dtype=np.float64):
-        cells[_shadowed(grid, floor, scanner, floor_height, parameters) & (cells == Cell.FREE)] = Cell.UNKNOWN
+    for origin in np.asarray(scanners_in_world, dtype=np.float64):
+        cells[_shadowed(grid, floor, origin, floor_height, scanner) & (cells == Cell.FREE)] = Cell.UNKNOWN
     for world_from_base in robot_poses:
         cells[_under(grid, footprint, world_from_base)] = Cell.FREE
     return replace(grid, cells=cells)
@@ -256,27 +258,27 @@ def _closed(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _shadowed(
     grid: OccupancyGrid,
     floor: NDArray[np.bool_],
-    scanner: NDArray[np.float64],
+    origin: NDArray[np.float64],
     floor_height: float,
-    parameters: GridParameters,
+    scanner: ScannerParameters,
 ) -> NDArray[np.bool_]:
-    """(rows, columns) cells of the scanner's blind disc in whose direction the floor beyond is missing unexplained.
+    """(rows, columns) cells of a scanner's blind disc in whose direction the floor beyond is missing unexplained.
 
     Something nearer than the minimum range swallowed those beams, and no known obstacle accounts for it.
     """
-    height = scanner[2] - floor_height
-    blind = height / np.tan(-np.radians(parameters.lowest_elevation_deg))
-    blind = float(max(blind, np.sqrt(max(parameters.min_range**2 - height**2, 0.0))))
+    height = origin[2] - floor_height
+    blind = height / np.tan(-scanner.lowest_elevation)
+    blind = float(max(blind, np.sqrt(max(scanner.range_min**2 - height**2, 0.0))))
     azimuths = np.radians(np.arange(0, 360, 2) + 1.0)
     radii = np.arange(grid.resolution, blind + 0.4, grid.resolution)
-    rays = scanner[:2] + radii[None, :, None] * np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)[:, None]
+    rays = origin[:2] + radii[None, :, None] * np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)[:, None]
     row, column, inside = grid.indices(rays)
     explained = (inside & (grid.cells[row, column] == Cell.OCCUPIED)).any(axis=1)
     beyond = radii > blind - 0.1
     lit = (inside & floor[row, column])[:, beyond].any(axis=1)
     suspect = ~explained & ~lit
 
-    offsets = grid.centres() - scanner[:2]
+    offsets = grid.centres() - origin[:2]
     azimuth = np.arctan2(offsets[..., 1], offsets[..., 0]) % (2 * np.pi)
     sector = np.minimum((azimuth / np.radians(2)).astype(np.intp), len(azimuths) - 1)
     return (np.hypot(offsets[..., 0], offsets[..., 1]) < blind) & suspect[sector] & ~floor

@@ -23,6 +23,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from mission.grid import Footprint, OccupancyGrid
 from mission.navigation import NavigationParameters, RoadMap, road_map
 from mission.survey import NOTHING, Preview, StructuralVoxels, Survey, SurveyParameters
+from sim.scanner import ScannerParameters
 
 COVERAGE, NO_GAIN, SCAN_LIMIT = "coverage", "no gain", "scan limit"
 NO_OVERLAP, UNREACHABLE = "no overlap", "nothing reachable"
@@ -102,6 +103,7 @@ def plan_next_scan(
     footprint: Footprint,
     room: NDArray[np.float64] | None = None,
     failed_in_world: NDArray[np.float64] | None = None,
+    scanner: ScannerParameters | None = None,
     navigation: NavigationParameters | None = None,
     parameters: PlanningParameters | None = None,
 ) -> Plan:
@@ -118,6 +120,7 @@ def plan_next_scan(
         footprint: Of the robot.
         room: (P, 2) polygon that candidates must lie in; anywhere by default.
         failed_in_world: (F, 3) where scans were taken that could not be used [m]: they count, and are not repeated.
+        scanner: What is to scan: its range and field of view.
     """
     parameters = parameters or PlanningParameters()
     roads = road_map(grid, world_from_base, footprint=footprint, parameters=navigation, within=room)
@@ -127,6 +130,7 @@ def plan_next_scan(
         scanners_in_world,
         floor_height=floor_height,
         room=room,
+        scanner=scanner or ScannerParameters(),
         parameters=parameters.survey,
     )
     mount = base_from_scanner[:3, 3] + np.array([0.0, 0.0, floor_height])

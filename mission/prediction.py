@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from sim.scanner import ScannerParameters
+
 _LEVELS = 4
 """Depth maps, each with bins twice as wide as the last one's."""
 _TOUCH = 0.15
@@ -25,13 +27,10 @@ _DIAGONAL = 1.5
 
 
 class ScannerView(BaseModel):
-    """What the scanner can see, and how finely that is predicted."""
+    """What of the scanner's view counts, and how finely it is predicted."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    lowest_elevation_deg: float = Field(default=-40.0, ge=-90.0, le=0.0, description="VZ-400: zenith angle 130 deg")
-    highest_elevation_deg: float = Field(default=60.0, ge=0.0, le=90.0, description="VZ-400: zenith angle 30 deg")
-    min_range: float = Field(default=1.5, ge=0.0, le=5.0, description="VZ-400 [m]")
     max_range: float = Field(default=10.0, gt=1.0, le=100.0, description="Beams are too far apart beyond [m]")
     max_incidence_deg: float = Field(default=75.0, gt=0.0, lt=90.0, description="Flatter beams see little")
     cube: float = Field(default=0.1, ge=0.02, le=0.5, description="Side of the cubes that points stand for [m]")
@@ -91,16 +90,23 @@ def find_obstacles(
     return Obstacles(cubes=centres[~on_surface], walls=np.empty((0, 2)) if walls is None else walls)
 
 
-def prospect(scanner_in_world: NDArray[np.float64], cells: Cells, obstacles: Obstacles, view: ScannerView) -> Prospect:
+def prospect(
+    scanner_in_world: NDArray[np.float64],
+    cells: Cells,
+    obstacles: Obstacles,
+    *,
+    scanner: ScannerParameters,
+    view: ScannerView,
+) -> Prospect:
     """Predict how cells would look from a (3,) place."""
     towards = scanner_in_world - cells.centres
     distance = np.sqrt(_dot(towards, towards))
     towards /= np.maximum(distance, 1e-9)[:, None]
     cosine = _dot(towards, cells.normals)
-    seen = (distance >= view.min_range) & (distance <= view.max_range)
+    seen = (distance >= scanner.range_min) & (distance <= min(view.max_range, scanner.range_max))
     seen &= cosine >= np.cos(np.radians(view.max_incidence_deg))
-    seen &= -towards[:, 2] >= np.sin(np.radians(view.lowest_elevation_deg))
-    seen &= -towards[:, 2] <= np.sin(np.radians(view.highest_elevation_deg))
+    seen &= -towards[:, 2] >= np.sin(scanner.lowest_elevation)
+    seen &= -towards[:, 2] <= np.sin(scanner.highest_elevation)
     at = np.flatnonzero(seen)
     hidden = _behind_cubes(cells.centres[at] - scanner_in_world, obstacles.cubes - scanner_in_world, view)
     hidden |= _behind_walls(scanner_in_world[:2], cells.centres[at, :2], obstacles.walls)

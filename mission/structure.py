@@ -14,6 +14,7 @@ from mission.plan_polygon import Loop
 from mission.samples import PosedSample, thinned
 from mission.visibility import Visibility, VisibilityParameters
 from mission.wall_finder import Outline, WallFinder, WallParameters, WallRectangle
+from sim.scanner import ScannerParameters
 
 Floats = NDArray[np.float64]
 
@@ -61,7 +62,12 @@ class Structure:
         return inside
 
 
-def find_structure(scans: Sequence[PosedSample], parameters: StructureParameters | None = None) -> Structure:
+def find_structure(
+    scans: Sequence[PosedSample],
+    parameters: StructureParameters | None = None,
+    *,
+    scanner: ScannerParameters | None = None,
+) -> Structure:
     """Finds floor, ceiling and walls of the room that the scans were taken in.
 
     A wall is a vertical surface that reaches the ceiling (the walls' common top where there is none), that a scanner
@@ -71,6 +77,7 @@ def find_structure(scans: Sequence[PosedSample], parameters: StructureParameters
     Args:
         scans: Samples of all scans of the room.
         parameters: What floor, ceiling and walls are.
+        scanner: What took the scans.
 
     Raises:
         MissionError: There is no floor under the scanners, or no wall round them.
@@ -79,7 +86,8 @@ def find_structure(scans: Sequence[PosedSample], parameters: StructureParameters
     scanners = np.array([scan.scanner_in_world for scan in scans])
     points, normals = _merged(scans, scanners, parameters)
     floor = _floor(points, normals, scanners, parameters)
-    finder = WallFinder(points, normals, floor, Visibility(scans, parameters.visibility), parameters.walls)
+    visibility = Visibility(scans, scanner or ScannerParameters(), parameters.visibility)
+    finder = WallFinder(points, normals, floor, visibility, parameters.walls)
     ceiling = _ceiling(points, normals, floor, scanners, parameters)
     if ceiling is not None:
         outline = finder.outline(ceiling)

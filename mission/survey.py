@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from detector.room import VoxelLabel
 from mission.prediction import Cells, Prospect, ScannerView, find_obstacles, prospect
+from sim.scanner import ScannerParameters
 
 
 class SurveyParameters(BaseModel):
@@ -74,18 +75,19 @@ class Survey:
         *,
         floor_height: float,
         room: NDArray[np.float64] | None,
+        scanner: ScannerParameters,
         parameters: SurveyParameters,
     ) -> None:
         self._cells = Cells(np.asarray(voxels.cells_in_world, np.float64), np.asarray(voxels.normals, np.float64))
         self._areas = np.asarray(voxels.areas, np.float64)
-        self._parameters, self._floor_height = parameters, floor_height
+        self._scanner, self._parameters, self._floor_height = scanner, parameters, floor_height
         self._obstacles = find_obstacles(points_in_world, self._cells, walls=room, view=parameters.view)
         self._occluded = voxels.labels == VoxelLabel.OCCLUDED
         self._occupied = voxels.labels == VoxelLabel.OCCUPIED
         self._walls = abs(self._cells.normals[:, 2]) < 0.5
         self._doorways, self._column = self._find_doorways((voxels.labels == VoxelLabel.OPENING) & self._walls)
         self._columns = np.bincount(self._column, self._areas[self._doorways])
-        self._earlier = [self._prospect(scanner) for scanner in np.asarray(scanners_in_world, np.float64)]
+        self._earlier = [self._prospect(origin) for origin in np.asarray(scanners_in_world, np.float64)]
         self._well_seen = self._any(self._well(view) for view in self._earlier)
         self._new_columns = {
             side: ~np.logical_or.reduce([self._columns_seen(view, side) for view in self._earlier]) for side in (1, -1)
@@ -106,8 +108,8 @@ class Survey:
             overlap=known / max(known + gain, 1e-9),
         )
 
-    def _prospect(self, scanner: NDArray[np.float64]) -> Prospect:
-        return prospect(scanner, self._cells, self._obstacles, self._parameters.view)
+    def _prospect(self, origin: NDArray[np.float64]) -> Prospect:
+        return prospect(origin, self._cells, self._obstacles, scanner=self._scanner, view=self._parameters.view)
 
     def _area(self, chosen: NDArray[np.bool_]) -> float:
         return float(self._areas[chosen].sum())

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from mission.rigid import inverted, transformed
 from mission.samples import PosedSample
+from sim.scanner import ScannerParameters
 
 Mask = NDArray[np.bool_]
 
@@ -20,13 +21,16 @@ class VisibilityParameters(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    minimum_range: float = Field(default=1.5, ge=0, description="nothing nearer returns: VZ-400 [m]")
     maximum_incidence: float = Field(
         default=float(np.deg2rad(75)), gt=0, lt=np.pi / 2, description="flatter beams may get lost on a surface [rad]"
     )
     shadow: float = Field(
         default=float(np.deg2rad(2)), gt=0, description="grid of the directions with something near [rad]"
     )
+
+
+_STAND = 0.4
+"""A scan's beams are free up to here [m]: the robot stands there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,13 +66,17 @@ class Visibility:
 
     Args:
         scans: All scans that may have looked.
+        scanner: What took them: nothing nearer than its minimum range returns.
         parameters: Limits.
     """
 
-    def __init__(self, scans: Sequence[PosedSample], parameters: VisibilityParameters | None = None) -> None:
+    def __init__(
+        self, scans: Sequence[PosedSample], scanner: ScannerParameters, parameters: VisibilityParameters | None = None
+    ) -> None:
         self.scans = tuple(scans)
         self.parameters = parameters or VisibilityParameters()
-        self._shadows = [_near_directions(scan, scans, self.parameters) for scan in scans]
+        self._nearest = scanner.range_min
+        self._shadows = [_near_directions(scan, scans, self._nearest, self.parameters) for scan in scans]
 
     def looked_through(
         self, places_in_world: NDArray[np.floating], normals_in_world: NDArray[np.floating], *, behind: float
@@ -98,7 +106,7 @@ class Visibility:
 
     def _void(self, number: int, places: NDArray[np.floating], sight: Sight) -> Mask:
         """Places (M,) in whose direction nothing came back, although nothing known is too close to return."""
-        void = sight.in_view & np.isnan(sight.measured) & (sight.distance > self.parameters.minimum_range)
+        void = sight.in_view & np.isnan(sight.measured) & (sight.distance > self._nearest)
         cells = _direction_cells(self.scans[number], places[void], self.parameters)
         void[void] = ~self._shadows[number][cells]
         return void
@@ -106,15 +114,17 @@ class Visibility:
     def _free_near(self, number: int, places: NDArray[np.floating]) -> Mask:
         """Places (M,) whose beam's stretch within the minimum range was seen free by other scans.
 
-        Its first 0.4 m are free because the robot stands there. A lone scan sees at least whether the floor is there.
+        A lone scan sees at least whether the floor is there.
         """
+        if self._nearest <= _STAND:
+            return np.ones(len(places), bool)
         if len(self.scans) == 1:
             return _over_floor(self.scans[number], places)
         origin = self.scans[number].scanner_in_world
         beams = places - origin
         beams = beams / np.sqrt(np.sum(beams**2, axis=1, keepdims=True))
         free = np.ones(len(places), bool)
-        for reach in np.linspace(0.4, self.parameters.minimum_range, 5):
+        for reach in np.linspace(_STAND, self._nearest, 5):
             spots = origin + reach * beams
             seen = np.zeros(len(places), bool)
             for other, scan in enumerate(self.scans):
@@ -152,13 +162,15 @@ def _nearest(angles: NDArray[np.float64], axis: NDArray[np.float64]) -> NDArray[
     return np.clip(index, -1, len(axis))
 
 
-def _near_directions(scan: PosedSample, scans: Sequence[PosedSample], parameters: VisibilityParameters) -> Mask:
-    """Grid of directions (elevation, azimuth) in which some scan found something too close for this one."""
+def _near_directions(
+    scan: PosedSample, scans: Sequence[PosedSample], nearest: float, parameters: VisibilityParameters
+) -> Mask:
+    """Grid of directions (elevation, azimuth) in which some scan found something too near for this one to measure."""
     from scipy.ndimage import binary_dilation
 
     rows, columns = _grid_shape(parameters)
     grid = np.zeros((rows, columns), bool)
-    reach = parameters.minimum_range + 0.1
+    reach = nearest + 0.1
     for other in scans:
         offset = other.points_in_world - scan.scanner_in_world.astype(np.float32)
         near = other.points_in_world[np.sum(offset**2, axis=1) < reach**2]

@@ -15,6 +15,7 @@ from mission.samples import PosedSample
 from mission.structure import Structure
 from mission.visibility import Visibility, VisibilityParameters
 from mission.wall_finder import WallRectangle
+from sim.scanner import ScannerParameters
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.uint8]
@@ -103,7 +104,11 @@ class VoxelModel:
 
 
 def label_voxels(
-    structure: Structure, scans: Sequence[PosedSample], parameters: VoxelParameters | None = None
+    structure: Structure,
+    scans: Sequence[PosedSample],
+    parameters: VoxelParameters | None = None,
+    *,
+    scanner: ScannerParameters | None = None,
 ) -> VoxelModel:
     """Labels the voxels of a room from all scans taken in it.
 
@@ -111,11 +116,12 @@ def label_voxels(
         structure: Its walls, floor and ceiling.
         scans: Samples of all its scans.
         parameters: Sizes.
+        scanner: What took the scans.
     """
     parameters = parameters or VoxelParameters()
     points = np.concatenate([scan.points_in_world for scan in scans]).astype(float)
     scanners = np.concatenate([np.broadcast_to(s.scanner_in_world, s.points_in_world.shape) for s in scans])
-    visibility = Visibility(scans, parameters.visibility)
+    visibility = Visibility(scans, scanner or ScannerParameters(), parameters.visibility)
     walls = [_wall_patch(wall, parameters) for wall in structure.walls]
     grids = _levels(structure, parameters)
     patches = walls + [patch for _, patch in grids]

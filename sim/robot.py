@@ -66,7 +66,7 @@ class Robot:
 
     def __init__(self, scene: Scene, parameters: RobotParameters, rng: np.random.Generator):
         self._model, self._data, self._prefix = scene.model, scene.data, scene.robot_prefix
-        self._parameters = parameters
+        self.parameters = parameters
         self._bodies = scene.robot_bodies
         self._base = self._model.body(f"{self._prefix}base").id
         self._left = [self._model.actuator(self._prefix + name).id for name in _LEFT]
@@ -113,14 +113,14 @@ class Robot:
             w: turn rate, anticlockwise positive [rad/s], cut likewise.
             duration: at least one physics step is done [s].
         """
-        limits = np.array([self._parameters.max_speed, self._parameters.max_turn_rate])
-        ramps = np.array([self._parameters.max_acceleration, self._parameters.max_turn_acceleration])
+        limits = np.array([self.parameters.max_speed, self.parameters.max_turn_rate])
+        ramps = np.array([self.parameters.max_acceleration, self.parameters.max_turn_acceleration])
         command = np.clip([v, w], -limits, limits)
         timestep = self._model.opt.timestep
         remaining = max(1, round(duration / timestep))
         self._touched = set()
         while remaining > 0:
-            steps = min(remaining, max(1, round(self._parameters.control_period / timestep)))
+            steps = min(remaining, max(1, round(self.parameters.control_period / timestep)))
             self._speed += np.clip(command - self._speed, -ramps * steps * timestep, ramps * steps * timestep)
             self._command_wheels()
             before = self._wheel_angles()
@@ -133,7 +133,7 @@ class Robot:
     def settle(self) -> None:
         """Stops and stands until the robot rests on its wheels."""
         self._speed[:] = 0.0
-        self.step(0.0, 0.0, self._parameters.settling_time)
+        self.step(0.0, 0.0, self.parameters.settling_time)
 
     def wait(self, duration: float) -> None:
         """Stands still with the brakes on while a sensor measures: the clock runs, nothing moves [s]."""
@@ -172,9 +172,9 @@ class Robot:
 
     def _command_wheels(self) -> None:
         v, w = self._speed
-        half = w * self._parameters.track_width / 2
-        self._data.ctrl[self._left] = (v - half) / self._parameters.wheel_radius
-        self._data.ctrl[self._right] = (v + half) / self._parameters.wheel_radius
+        half = w * self.parameters.track_width / 2
+        self._data.ctrl[self._left] = (v - half) / self.parameters.wheel_radius
+        self._data.ctrl[self._right] = (v + half) / self.parameters.wheel_radius
 
     def _touching(self) -> set[int]:
         """Geoms of the scene that the robot touches other than from above."""

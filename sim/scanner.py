@@ -16,8 +16,8 @@ from sim.panorama import cast_panorama
 from sim.render import Renderer
 from sim.render.materials import materials_of
 
-ELEVATION_TOP_DEG = 60.0
-"""Upper end of the field of view; the lower one is 100 deg below, at -40 deg (riegllms, riegl-vz driver)."""
+ELEVATION_TOP_DEG, ELEVATION_BOTTOM_DEG = 60.0, -40.0
+"""Ends of the field of view (riegllms, riegl-vz driver)."""
 BEAMS_PER_SECOND = 122_000.0
 """Effective measurement rate in high-speed mode (data sheet)."""
 DARKEST, BRIGHTEST = 0.02, 0.95
@@ -62,6 +62,16 @@ class ScannerParameters(BaseModel):
     precision: float = Field(default=PRECISION, ge=0, le=0.1, description="range noise, one sigma [m] (data sheet)")
     range_min: float = Field(default=RANGE_MIN, ge=0.1, description="nearest range measured [m] (HELIOS++)")
     range_max: float = Field(default=RANGE_MAX, le=900, description="farthest range on a 90 % target [m] (data sheet)")
+
+    @property
+    def highest_elevation(self) -> float:
+        """Upper end of the field of view [rad]."""
+        return math.radians(ELEVATION_TOP_DEG)
+
+    @property
+    def lowest_elevation(self) -> float:
+        """Lower end of the field of view [rad]."""
+        return math.radians(ELEVATION_BOTTOM_DEG)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import sim.scene
 from mission.grid import Cell, Footprint, OccupancyGrid
+from sim.robot import RobotParameters
 
 Rectangle = tuple[float, float, float, float]
 """x from, x to, y from, y to [m]."""
@@ -61,7 +62,16 @@ def laser_scan(
 class Unicycle:
     """A robot that does what it is told, while its odometry counts a little differently."""
 
-    def __init__(self, start: NDArray[np.float64], *, drift: float = 0.0, bias: float = 0.0, grip: float = 1.0) -> None:
+    def __init__(
+        self,
+        start: NDArray[np.float64],
+        *,
+        drift: float = 0.0,
+        bias: float = 0.0,
+        grip: float = 1.0,
+        parameters: RobotParameters | None = None,
+    ) -> None:
+        self.parameters = parameters or RobotParameters()
         self.true, self.odometry, self.time = start, start, 0.0
         self._drift, self._bias, self._grip, self._rng = drift, bias, grip, np.random.default_rng(0)
         self.commands: list[tuple[float, float]] = []

@@ -11,6 +11,7 @@ from mission.driving import drive
 from mission.following import DrivingParameters, follow_path
 from mission.grid import Cell, OccupancyGrid, with_laser
 from mission.navigation import plan_path
+from sim.robot import RobotParameters
 from tests.mission.driving_world import FOOTPRINT, Unicycle, body_gap, hokuyos, laser_scan, pose
 
 
@@ -44,6 +45,16 @@ def test_an_l_shaped_path_is_driven_to_its_end_within_what_odometry_drifts(seed:
     v, w = np.abs(np.array(robot.commands)).T
     assert v.max() <= 0.3 and w.max() <= 0.7
     assert robot.time < 40.0  # 4 m at 0.3 m/s, three turns of up to 2 rad at 0.7 rad/s
+
+
+def test_a_slower_robot_is_driven_no_faster_than_it_can() -> None:
+    slow = RobotParameters(max_speed=0.1, max_turn_rate=0.2, max_acceleration=0.05)
+    robot = Unicycle(pose(0, 0), parameters=slow)
+    path = np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.5]])
+    assert drive(robot, path, hokuyos(robot, []), footprint=FOOTPRINT).arrived
+    v, w = np.array(robot.commands).T
+    assert v.max() == pytest.approx(0.1) and abs(w).max() == pytest.approx(0.2)
+    assert np.diff(v).max() <= 0.05 * 0.1 + 1e-9  # a tick is 0.1 s
 
 
 def test_the_record_of_a_drive_begins_at_its_start_and_ends_at_its_end() -> None:

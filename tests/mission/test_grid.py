@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from mission.grid import Cell, Footprint, OccupancyGrid, grid_from_scans, with_laser
+from sim.scanner import ScannerParameters
 from tests.mission.driving_world import FOOTPRINT, Rectangle, free_room, laser_scan, pose
 
 SCANNER = np.array([[0.0, 0.0, 1.2]])
@@ -80,6 +81,23 @@ def test_a_missing_floor_betrays_a_table_top_that_scanner_and_hokuyo_both_miss()
     grid = grid_from_scans(shadowed, SCANNER, floor_height=0.0, footprint=FOOTPRINT, lasers=both_lasers([]))
     assert state(grid, 1.0, 0.0) == Cell.UNKNOWN
     assert state(grid, -1.0, 0.0) == Cell.FREE
+
+
+def test_the_blind_disc_is_as_wide_as_the_least_range_of_the_scanner() -> None:
+    # From 1.2 m height a least range of 3 m reaches the floor 2.75 m away: there it must begin, and the Hokuyos may
+    # clear what lies within. Of a scanner that measures from 1.5 m on, it should have begun at 1.43 m.
+    floor = sheet((-4, 4), (-4, 4), 0.0)
+    floor = floor[np.hypot(floor[:, 0], floor[:, 1]) > 2.75]
+    for range_min, expected in ((3.0, Cell.FREE), (1.5, Cell.UNKNOWN)):
+        grid = grid_from_scans(
+            floor,
+            SCANNER,
+            floor_height=0.0,
+            footprint=FOOTPRINT,
+            lasers=both_lasers([]),
+            scanner=ScannerParameters(range_min=range_min),
+        )
+        assert state(grid, 1.0, 0.0) == expected
 
 
 def test_a_laser_reading_never_clears_what_the_scanner_found_occupied() -> None:

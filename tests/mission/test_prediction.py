@@ -5,15 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from mission.prediction import Cells, Obstacles, ScannerView, find_obstacles, prospect
+from sim.scanner import ScannerParameters
 from tests.mission.voxel_room import ROOM, box_points, room_voxels
 
 NO_OBSTACLES = Obstacles(cubes=np.empty((0, 3)), walls=np.empty((0, 2)))
 
 
-def sees(cell: tuple[float, float, float], normal: tuple[float, float, float]) -> bool:
-    """Whether a scanner at the origin sees one cell in the open."""
+def sees(cell: tuple[float, float, float], normal: tuple[float, float, float], **scanner: float) -> bool:
+    """Whether a scanner at the origin, with some parameters of its own, sees one cell in the open."""
     cells = Cells(np.array([cell]), np.array([normal]))
-    return bool(prospect(np.zeros(3), cells, NO_OBSTACLES, ScannerView()).seen[0])
+    parameters = ScannerParameters.model_validate(scanner)
+    return bool(prospect(np.zeros(3), cells, NO_OBSTACLES, scanner=parameters, view=ScannerView()).seen[0])
 
 
 def test_cells_are_seen_within_range_field_of_view_and_incidence_only() -> None:
@@ -29,6 +31,12 @@ def test_cells_are_seen_within_range_field_of_view_and_incidence_only() -> None:
     assert sees((1.0, 3.60, 0), towards_x) and not sees((1.0, 3.85, 0), towards_x)
 
 
+def test_the_ranges_of_the_scanner_are_those_that_the_prediction_believes() -> None:
+    towards_x = (-1.0, 0.0, 0.0)
+    assert sees((1.4, 0, 0), towards_x, range_min=1.3) and not sees((1.6, 0, 0), towards_x, range_min=1.7)
+    assert sees((9.5, 0, 0), towards_x, range_max=9.7) and not sees((9.9, 0, 0), towards_x, range_max=9.7)
+
+
 def test_furniture_hides_the_cells_behind_it_and_no_others() -> None:
     wall = np.array([[4.0, y, 0.0] for y in np.arange(-2.9, 3.0, 0.2)])
     cells = Cells(wall, np.tile([-1.0, 0.0, 0.0], (len(wall), 1)))
@@ -37,7 +45,7 @@ def test_furniture_hides_the_cells_behind_it_and_no_others() -> None:
     obstacles = find_obstacles(
         post, Cells(np.array([[0.0, -5, -5], [5, 5, 5]]), np.eye(3)[:2]), walls=None, view=ScannerView()
     )
-    seen = prospect(np.zeros(3), cells, obstacles, ScannerView()).seen
+    seen = prospect(np.zeros(3), cells, obstacles, scanner=ScannerParameters(), view=ScannerView()).seen
     assert not seen[np.abs(wall[:, 1]) < 0.45].any()
     assert seen[np.abs(wall[:, 1]) > 0.75].all()
 
@@ -50,7 +58,7 @@ def test_furniture_close_to_the_scanner_has_no_holes_to_look_through() -> None:
     assert len(obstacles.cubes) == 0  # outside the cells' bounding box nothing is kept
     corners = Cells(np.concatenate([wall, [[0, -2, -2], [0, 2, 2]]]), np.concatenate([cells.normals, np.eye(3)[:2]]))
     obstacles = find_obstacles(panel, corners, walls=None, view=ScannerView())
-    assert not prospect(np.zeros(3), cells, obstacles, ScannerView()).seen.any()
+    assert not prospect(np.zeros(3), cells, obstacles, scanner=ScannerParameters(), view=ScannerView()).seen.any()
 
 
 def test_the_points_of_a_wall_do_not_hide_the_wall() -> None:
@@ -58,13 +66,24 @@ def test_the_points_of_a_wall_do_not_hide_the_wall() -> None:
     cells = Cells(voxels.cells_in_world, voxels.normals)
     noise = np.random.default_rng(0).normal(0, 0.004, (len(cells.centres), 3))
     obstacles = find_obstacles(cells.centres + noise, cells, walls=ROOM, view=ScannerView())
-    bare = prospect(np.array([2.0, 2.0, 1.2]), cells, NO_OBSTACLES, ScannerView()).seen
-    np.testing.assert_array_equal(prospect(np.array([2.0, 2.0, 1.2]), cells, obstacles, ScannerView()).seen, bare)
+    bare = prospect(
+        np.array([2.0, 2.0, 1.2]), cells, NO_OBSTACLES, scanner=ScannerParameters(), view=ScannerView()
+    ).seen
+    np.testing.assert_array_equal(
+        prospect(np.array([2.0, 2.0, 1.2]), cells, obstacles, scanner=ScannerParameters(), view=ScannerView()).seen,
+        bare,
+    )
 
 
 def test_a_corner_of_the_room_hides_the_other_arm() -> None:
     # An L: the notch is x > 3, y > 2. From deep in one arm the far end of the other is out of sight.
     walls = np.array([[0.0, 0], [6, 0], [6, 2], [3, 2], [3, 6], [0, 6]])
     cells = Cells(np.array([[6.0, 1.0, 1.0], [1.5, 0.0, 1.0]]), np.array([[-1.0, 0, 0], [0.0, 1, 0]]))
-    seen = prospect(np.array([1.5, 5.0, 1.2]), cells, Obstacles(np.empty((0, 3)), walls), ScannerView()).seen
+    seen = prospect(
+        np.array([1.5, 5.0, 1.2]),
+        cells,
+        Obstacles(np.empty((0, 3)), walls),
+        scanner=ScannerParameters(),
+        view=ScannerView(),
+    ).seen
     assert seen.tolist() == [False, True]

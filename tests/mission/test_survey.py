@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mission.survey import Survey, SurveyParameters
+from sim.scanner import ScannerParameters
 from tests.mission.voxel_room import OCCLUDED, OPENING, ROOM, SCANNER, Voxels, room_voxels
 
 
@@ -18,6 +19,7 @@ def survey_of(voxels: Voxels, scanners: list[tuple[float, float]]) -> Survey:
         np.array([(x, y, SCANNER) for x, y in scanners]),
         floor_height=0.0,
         room=ROOM,
+        scanner=ScannerParameters(),
         parameters=SurveyParameters(),
     )
 
@@ -58,13 +60,22 @@ def test_a_turned_and_shifted_room_is_worth_the_same() -> None:
     turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
     turned = replace(voxels, cells_in_world=voxels.cells_in_world @ turn.T + shift, normals=voxels.normals @ turn.T)
     here, there = np.array([[1.2, 0.8, SCANNER]]), np.array([3.5, 3.1, SCANNER])
-    before = Survey(voxels, np.empty((0, 3)), here, floor_height=0.0, room=ROOM, parameters=SurveyParameters())
+    before = Survey(
+        voxels,
+        np.empty((0, 3)),
+        here,
+        floor_height=0.0,
+        room=ROOM,
+        scanner=ScannerParameters(),
+        parameters=SurveyParameters(),
+    )
     after = Survey(
         turned,
         np.empty((0, 3)),
         here @ turn.T + shift,
         floor_height=-3.0,
         room=ROOM @ turn[:2, :2].T + shift[:2],
+        scanner=ScannerParameters(),
         parameters=SurveyParameters(),
     )
     expected, got = before.preview(there), after.preview(turn @ there + shift)

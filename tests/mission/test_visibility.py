@@ -1,12 +1,14 @@
-"""Directions in which something stands too near for the scanner."""
+"""What scans say of places without points, and directions in which something stands too near for the scanner."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from mission.samples import PosedSample, ScanSample
-from mission.visibility import VisibilityParameters, _direction_cells, _near_directions
+import tests.mission.boxroom as boxroom
+from mission.samples import PosedSample, ScanSample, place, sample_scan
+from mission.visibility import Visibility, VisibilityParameters, _direction_cells, _near_directions
+from sim.scanner import ScannerParameters
 
 
 def scan(*points: tuple[float, float, float]) -> PosedSample:
@@ -25,7 +27,7 @@ def at(azimuth_deg: float, distance: float) -> tuple[float, float, float]:
 @pytest.mark.parametrize("azimuth_deg", [57.0, 179.9, -179.9, 0.0])
 def test_a_near_thing_shadows_a_cell_on_either_side_of_it_also_across_the_seam(azimuth_deg: float) -> None:
     own, parameters = scan(), VisibilityParameters()
-    shadows = _near_directions(own, [own, scan(at(azimuth_deg, 1.0))], parameters)
+    shadows = _near_directions(own, [own, scan(at(azimuth_deg, 1.0))], 1.5, parameters)
     step = np.degrees(parameters.shadow)
 
     def shadowed(offset_deg: float) -> bool:
@@ -33,3 +35,16 @@ def test_a_near_thing_shadows_a_cell_on_either_side_of_it_also_across_the_seam(a
 
     assert shadowed(-0.9 * step) and shadowed(0.0) and shadowed(0.9 * step)
     assert not shadowed(-2.1 * step) and not shadowed(2.1 * step)
+
+
+@pytest.mark.parametrize(("range_min", "passed"), [(1.5, True), (2.5, False), (0.3, True)])
+def test_a_beam_without_return_tells_nothing_of_places_nearer_than_the_scanner_measures(
+    range_min: float, passed: bool
+) -> None:
+    # Open ground all round: at the scanner's height nothing comes back from anywhere. The place is 2 m away.
+    world_from_scanner = boxroom.pose(0, 0)
+    ground = [boxroom.box((-30, 30), (-30, 30), (-0.2, 0))]
+    posed = place(sample_scan(boxroom.scan(ground, world_from_scanner)), world_from_scanner)
+    spot, normal = world_from_scanner[:3, 3] + [[2.0, 0.0, 0.0]], np.array([[-1.0, 0.0, 0.0]])
+    visibility = Visibility([posed], ScannerParameters(range_min=range_min))
+    assert visibility.looked_through(spot, normal, behind=0.2).tolist() == [[passed]]
