@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from detector.parameters import DetectorParameters
 from mission.errors import UsageError
@@ -20,14 +20,13 @@ from mission.structure import StructureParameters
 from mission.voxels import VoxelParameters
 from sim.camera import CameraParameters
 from sim.hokuyo import HokuyoParameters
+from sim.parameters import Parameters
 from sim.robot import RobotParameters
 from sim.scanner import ScannerParameters
 
 
-class MissionConfig(BaseModel):
+class MissionConfig(Parameters):
     """Every parameter of a mission, stage by stage."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     scanner: ScannerParameters = Field(default_factory=ScannerParameters, description="Riegl VZ-400")
     camera: CameraParameters = Field(default_factory=CameraParameters, description="Nikon D90 with flash")

@@ -6,29 +6,28 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mission.grid import Footprint
+from sim.parameters import Parameters
 from sim.robot import RobotParameters
 
 
-class DrivingParameters(BaseModel):
+class DrivingParameters(Parameters):
     """How exactly and how carefully the robot follows its path; how fast is the robot's own limit."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
     acceleration: float = Field(
-        default=0.3, gt=0.0, le=2.0, description="[m/s2], for braking too; at most what the robot can do"
+        default=0.3, ge=0.01, le=2.0, description="[m/s2], for braking too; at most what the robot can do"
     )
-    heading_gain: float = Field(default=2.0, gt=0.0, le=10.0, description="Turn rate per heading error [1/s]")
+    heading_gain: float = Field(default=2.0, ge=0.01, le=10.0, description="Turn rate per heading error [1/s]")
     aligned: float = Field(
-        default=0.17, gt=0.0, le=1.0, description="Heading error at which driving gives way to turning [rad]"
+        default=0.17, ge=0.01, le=1.0, description="Heading error at which driving gives way to turning [rad]"
     )
     backwards: float = Field(
         default=0.5, ge=0.0, le=1.6, description="A way point this close to straight behind: reverse [rad]"
     )
-    tolerance: float = Field(default=0.05, gt=0.0, le=0.5, description="A way point is reached from here on [m]")
-    tick: float = Field(default=0.1, gt=0.0, le=1.0, description="Time between commands [s]; the Hokuyos' 10 Hz")
+    tolerance: float = Field(default=0.05, ge=0.005, le=0.5, description="A way point is reached from here on [m]")
+    tick: float = Field(default=0.1, ge=0.01, le=1.0, description="Time between commands [s]; the Hokuyos' 10 Hz")
     foresight: float = Field(
         default=0.8, ge=0.0, le=5.0, description="The body's next moves must be free for so long [s]"
     )
@@ -38,8 +37,8 @@ class DrivingParameters(BaseModel):
     readings: int = Field(
         default=2, ge=1, le=50, description="So many within the guard are an obstacle; fewer are noise"
     )
-    patience: float = Field(default=30.0, gt=0.0, le=600.0, description="Without progress for so long: stuck [s]")
-    progress: float = Field(default=0.05, gt=0.0, le=1.0, description="What counts as progress along the path [m]")
+    patience: float = Field(default=30.0, ge=1.0, le=600.0, description="Without progress for so long: stuck [s]")
+    progress: float = Field(default=0.05, ge=0.001, le=1.0, description="What counts as progress along the path [m]")
     halt: float = Field(
         default=3.0, gt=0.0, le=30.0, description="Braking at the end of a leg takes so long at most [s]"
     )

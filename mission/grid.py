@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from sim.parameters import Parameters
 from sim.scanner import ScannerParameters
 
 if TYPE_CHECKING:
@@ -35,10 +36,8 @@ class Cell(IntEnum):
     OCCUPIED = 2
 
 
-class GridParameters(BaseModel):
+class GridParameters(Parameters):
     """What counts as floor and as obstacle."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     resolution: float = Field(default=0.05, ge=0.02, le=0.2, description="Side of a cell [m]")
     lowest_obstacle: float = Field(

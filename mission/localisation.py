@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from sim.parameters import Parameters
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -21,20 +23,25 @@ if TYPE_CHECKING:
     from sim.hokuyo import LaserScan
 
 
-class LocalisationParameters(BaseModel):
+class LocalisationParameters(Parameters):
     """How readings are matched with the scanned room."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    band: float = Field(default=0.05, gt=0.0, le=0.5, description="Points so near the lasers' plane are its map [m]")
+    band: float = Field(default=0.05, ge=0.005, le=0.5, description="Points so near the lasers' plane are its map [m]")
     laser_range: float = Field(default=4.0, gt=0.5, le=5.6, description="Readings count up to here: guaranteed [m]")
-    reaches: tuple[float, ...] = Field(
-        default=(0.3, 0.3, 0.2, 0.1, 0.1, 0.06), description="How far a reading's partner may be, step by step [m]"
+    reaches: tuple[Annotated[float, Field(gt=0, le=10)], ...] = Field(
+        default=(0.3, 0.3, 0.2, 0.1, 0.1, 0.06),
+        min_length=1,
+        max_length=50,
+        description="How far a reading's partner may be, step by step [m]",
     )
-    noise: float = Field(default=0.03, gt=0.0, le=0.2, description="Of a reading against the map [m]; 1 % of 3 m")
-    independent: float = Field(default=50.0, gt=1.0, description="Readings that err independently of each other")
-    drift: float = Field(default=0.05, gt=0.0, le=1.0, description="Of the odometry since the last match, 1 sigma [m]")
-    turn_drift: float = Field(default=0.03, gt=0.0, le=1.0, description="Likewise of its heading [rad]")
+    noise: float = Field(default=0.03, ge=0.001, le=0.2, description="Of a reading against the map [m]; 1 % of 3 m")
+    independent: float = Field(
+        default=50.0, gt=1.0, le=10_000.0, description="Readings that err independently of each other"
+    )
+    drift: float = Field(
+        default=0.05, ge=0.001, le=1.0, description="Of the odometry since the last match, 1 sigma [m]"
+    )
+    turn_drift: float = Field(default=0.03, ge=0.001, le=1.0, description="Likewise of its heading [rad]")
     fitness: float = Field(default=0.5, ge=0.0, le=1.0, description="Share of readings that must find a partner")
 
 

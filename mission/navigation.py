@@ -13,17 +13,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mission.following import DrivingParameters
 from mission.grid import Cell, Footprint, GridParameters, OccupancyGrid
 from mission.localisation import LocalisationParameters
+from sim.parameters import Parameters
 
 
-class NavigationParameters(BaseModel):
+class NavigationParameters(Parameters):
     """How the robot finds and follows its way."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     margin: float = Field(
         default=0.08,

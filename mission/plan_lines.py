@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from sim.parameters import Parameters
 
 Floats = NDArray[np.float64]
 
 
-class LineParameters(BaseModel):
+class LineParameters(Parameters):
     """What a wall's line is."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    thickness: float = Field(default=0.03, gt=0, description="points this near belong to a line [m]")
-    softness: float = Field(default=0.006, gt=0, description="Tukey width of the last fit: posters do not pull [m]")
-    least_points: int = Field(default=150, ge=10, description="of a line: 3 cm apart, half a metre by 0.3 m")
-    column: float = Field(default=0.1, gt=0, description="width of the columns that a wall is judged by [m]")
-    top_band: float = Field(default=0.15, gt=0, description="a wall reaches this near to the ceiling [m]")
-    least_length: float = Field(default=0.3, gt=0, description="of a wall [m]")
-    recess: tuple[float, float] = Field(
+    thickness: float = Field(default=0.03, ge=0.003, le=0.5, description="points this near belong to a line [m]")
+    softness: float = Field(
+        default=0.006, ge=0.001, le=0.1, description="Tukey width of the last fit: posters do not pull [m]"
+    )
+    least_points: int = Field(
+        default=150, ge=10, le=100_000, description="of a line: 3 cm apart, half a metre by 0.3 m"
+    )
+    column: float = Field(default=0.1, ge=0.02, le=1, description="width of the columns that a wall is judged by [m]")
+    top_band: float = Field(default=0.15, ge=0.01, le=2, description="a wall reaches this near to the ceiling [m]")
+    least_length: float = Field(default=0.3, ge=0.05, le=10, description="of a wall [m]")
+    recess: tuple[Annotated[float, Field(ge=0, le=5)], Annotated[float, Field(ge=0, le=5)]] = Field(
         default=(0.2, 0.8), description="a surface with a like one this far behind it is furniture, not wall [m]"
     )
 

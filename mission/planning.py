@@ -18,11 +18,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mission.grid import Footprint, OccupancyGrid
 from mission.navigation import NavigationParameters, RoadMap, road_map
 from mission.survey import NOTHING, Preview, StructuralVoxels, Survey, SurveyParameters
+from sim.parameters import Parameters
 from sim.scanner import ScannerParameters
 
 COVERAGE, NO_GAIN, SCAN_LIMIT = "coverage", "no gain", "scan limit"
@@ -32,10 +33,8 @@ NO_WAY = "no way there"
 """Reason against a candidate."""
 
 
-class PlanningParameters(BaseModel):
+class PlanningParameters(Parameters):
     """What a scan is worth, and when to stop."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     max_scans: int = Field(default=6, ge=1, le=100, description="Scans of a room, the first included")
     target_coverage: float = Field(default=0.98, gt=0.0, le=1.0, description="Share of the structure's area")

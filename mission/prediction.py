@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from sim.parameters import Parameters
 from sim.scanner import ScannerParameters
 
 _LEVELS = 4
@@ -26,10 +27,8 @@ _DIAGONAL = 1.5
 """Neighbouring cubes of a surface lie up to this many sides apart: a bin must not be narrower, or it leaves holes."""
 
 
-class ScannerView(BaseModel):
+class ScannerView(Parameters):
     """What of the scanner's view counts, and how finely it is predicted."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     max_range: float = Field(default=10.0, gt=1.0, le=100.0, description="Beams are too far apart beyond [m]")
     max_incidence_deg: float = Field(default=75.0, gt=0.0, lt=90.0, description="Flatter beams see little")

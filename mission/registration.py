@@ -6,14 +6,15 @@ Written with numpy and a k-d tree rather than Open3D, whose parallel sums on two
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mission.rigid import Pose, angle_between, from_rotation_vector, rotated, transformed
 from mission.samples import PosedSample, ScanSample, place, thinned
+from sim.parameters import Parameters
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -21,31 +22,34 @@ if TYPE_CHECKING:
 Points = NDArray[np.float64]
 
 
-class RegistrationParameters(BaseModel):
+class RegistrationParameters(Parameters):
     """The ICP's schedule, and what a good registration is."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    points: int = Field(default=6000, ge=500, description="points of the scan that look for a partner in the map")
-    maximum_range: float = Field(default=15.0, gt=2, description="of these points from the scanner [m]")
-    reaches: tuple[float, ...] = Field(
+    points: int = Field(
+        default=6000, ge=500, le=1_000_000, description="points of the scan that look for a partner in the map"
+    )
+    maximum_range: float = Field(default=15.0, gt=2, le=900, description="of these points from the scanner [m]")
+    reaches: tuple[Annotated[float, Field(gt=0, le=10)], ...] = Field(
         default=(1.0, 0.5, 0.25, 0.12, 0.06, 0.04),
         min_length=1,
+        max_length=50,
         description="distance to a partner, round by round [m]",
     )
-    iterations: int = Field(default=10, ge=1, description="at most, a round")
+    iterations: int = Field(default=10, ge=1, le=1000, description="at most, a round")
     minimum_fitness: float = Field(
         default=0.35, ge=0, le=1, description="share of the points with a partner in the last round"
     )
-    maximum_rmse: float = Field(default=0.010, gt=0, description="point-to-plane residual in the last round [m]")
+    maximum_rmse: float = Field(
+        default=0.010, gt=0, le=0.2, description="point-to-plane residual in the last round [m]"
+    )
     minimum_constraint: float = Field(
         default=0.01, ge=0, le=1, description="share of the partners that must hold the least held direction"
     )
-    maximum_shift: float = Field(default=0.6, gt=0, description="of the guess by the registration [m]")
+    maximum_shift: float = Field(default=0.6, gt=0, le=10, description="of the guess by the registration [m]")
     maximum_turn: float = Field(
-        default=float(np.deg2rad(12)), gt=0, description="of the guess by the registration [rad]"
+        default=float(np.deg2rad(12)), gt=0, le=np.pi, description="of the guess by the registration [rad]"
     )
-    spacing: float = Field(default=0.03, gt=0, description="of the map's points [m]")
+    spacing: float = Field(default=0.03, ge=0.005, le=0.2, description="of the map's points [m]")
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mission.rigid import Pose, rotated, transformed
+from sim.parameters import Parameters
 
 if TYPE_CHECKING:
     from sim.scanner import Scan
@@ -18,18 +19,20 @@ if TYPE_CHECKING:
 Image = NDArray[np.float64]
 
 
-class SampleParameters(BaseModel):
+class SampleParameters(Parameters):
     """How a scan is thinned and where its normals come from."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
     step: float = Field(
-        default=float(np.deg2rad(0.24)), gt=0, le=0.02, description="pitch of the coarse range image [rad]"
+        default=float(np.deg2rad(0.24)), ge=0.0005, le=0.02, description="pitch of the coarse range image [rad]"
     )
-    window: float = Field(default=float(np.deg2rad(1.7)), gt=0, le=0.1, description="side of a normal's window [rad]")
-    spacing: float = Field(default=0.03, gt=0, le=0.2, description="one point is kept in a cube of this side [m]")
-    maximum_range: float = Field(default=30.0, gt=2, description="points beyond are not of this room [m]")
-    roughness: float = Field(default=0.008, gt=0, description="largest residual (1 sigma) of a surface called flat [m]")
+    window: float = Field(
+        default=float(np.deg2rad(1.7)), ge=0.005, le=0.1, description="side of a normal's window [rad]"
+    )
+    spacing: float = Field(default=0.03, ge=0.005, le=0.2, description="one point is kept in a cube of this side [m]")
+    maximum_range: float = Field(default=30.0, gt=2, le=900, description="points beyond are not of this room [m]")
+    roughness: float = Field(
+        default=0.008, ge=0.001, le=0.1, description="largest residual (1 sigma) of a surface called flat [m]"
+    )
     maximum_incidence: float = Field(
         default=float(np.deg2rad(82)), gt=0, lt=np.pi / 2, description="beyond it a normal is not trusted [rad]"
     )

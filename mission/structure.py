@@ -7,27 +7,26 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mission.errors import MissionError
 from mission.plan_polygon import Loop
 from mission.samples import PosedSample, thinned
 from mission.visibility import Visibility, VisibilityParameters
 from mission.wall_finder import Outline, WallFinder, WallParameters, WallRectangle
+from sim.parameters import Parameters
 from sim.scanner import ScannerParameters
 
 Floats = NDArray[np.float64]
 
 
-class StructureParameters(BaseModel):
+class StructureParameters(Parameters):
     """What floor, ceiling and walls are."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    reach: float = Field(default=15.0, gt=0, description="floor and walls lie within this of some scanner [m]")
-    spacing: float = Field(default=0.03, gt=0, description="of the points that are looked at [m]")
-    least_level: float = Field(default=1.0, gt=0, description="least area of floor or ceiling [m2]")
-    least_height: float = Field(default=1.8, gt=0, description="of a ceiling above the floor [m]")
+    reach: float = Field(default=15.0, ge=3, le=200, description="floor and walls lie within this of some scanner [m]")
+    spacing: float = Field(default=0.03, ge=0.005, le=0.2, description="of the points that are looked at [m]")
+    least_level: float = Field(default=1.0, gt=0, le=100, description="least area of floor or ceiling [m2]")
+    least_height: float = Field(default=1.8, ge=0.5, le=20, description="of a ceiling above the floor [m]")
     ceiling_share: float = Field(default=0.2, ge=0, le=1, description="of the room's area that a ceiling shows")
     walls: WallParameters = Field(default_factory=WallParameters)
     visibility: VisibilityParameters = Field(default_factory=VisibilityParameters)

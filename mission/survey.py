@@ -8,17 +8,16 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from detector.room import VoxelLabel
 from mission.prediction import Cells, Prospect, ScannerView, find_obstacles, prospect
+from sim.parameters import Parameters
 from sim.scanner import ScannerParameters
 
 
-class SurveyParameters(BaseModel):
+class SurveyParameters(Parameters):
     """What counts as seen, and as seen well."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     oblique_deg: float = Field(default=65.0, gt=0.0, lt=90.0, description="Incidence beyond which a view is poor")
     aside_deg: float = Field(default=20.0, ge=0.0, lt=90.0, description="Bearing from which a doorway's side is seen")

@@ -7,25 +7,24 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mission.rigid import inverted, transformed
 from mission.samples import PosedSample
+from sim.parameters import Parameters
 from sim.scanner import ScannerParameters
 
 Mask = NDArray[np.bool_]
 
 
-class VisibilityParameters(BaseModel):
+class VisibilityParameters(Parameters):
     """When a beam counts as having passed a place."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     maximum_incidence: float = Field(
         default=float(np.deg2rad(75)), gt=0, lt=np.pi / 2, description="flatter beams may get lost on a surface [rad]"
     )
     shadow: float = Field(
-        default=float(np.deg2rad(2)), gt=0, description="grid of the directions with something near [rad]"
+        default=float(np.deg2rad(2)), ge=0.002, le=0.5, description="grid of the directions with something near [rad]"
     )
 
 

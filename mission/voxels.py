@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from detector.room import Room, View, VoxelLabel, Wall
 from mission.samples import PosedSample
 from mission.structure import Structure
 from mission.visibility import Visibility, VisibilityParameters
 from mission.wall_finder import WallRectangle
+from sim.parameters import Parameters
 from sim.scanner import ScannerParameters
 
 Floats = NDArray[np.float64]
@@ -26,22 +27,22 @@ CEILING = -2
 """In `VoxelModel.surfaces`: the ceiling."""
 
 
-class VoxelParameters(BaseModel):
+class VoxelParameters(Parameters):
     """The grid, and what a voxel of a wall reaches."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
     size: float = Field(default=0.2, ge=0.05, le=0.5, description="side of a voxel: section 3 [m]")
-    behind: float = Field(default=0.2, gt=0, description="a wall's voxel reaches this far behind its face [m]")
-    before: float = Field(default=0.1, gt=0, description="a wall's voxel reaches this far into the room [m]")
-    floor_clearance: float = Field(default=0.05, ge=0, description="below it points are floor or sill, not wall [m]")
+    behind: float = Field(default=0.2, ge=0.01, le=1, description="a wall's voxel reaches this far behind its face [m]")
+    before: float = Field(default=0.1, ge=0.01, le=1, description="a wall's voxel reaches this far into the room [m]")
+    floor_clearance: float = Field(
+        default=0.05, ge=0, le=0.5, description="below it points are floor or sill, not wall [m]"
+    )
     maximum_incidence: float = Field(
         default=float(np.deg2rad(78)),
         gt=0,
         lt=np.pi / 2,
         description="seen flatter only, a wall's points are too far apart to show what is there [rad]",
     )
-    level_reach: float = Field(default=0.08, gt=0, description="points this near are floor or ceiling [m]")
+    level_reach: float = Field(default=0.08, ge=0.01, le=0.5, description="points this near are floor or ceiling [m]")
     visibility: VisibilityParameters = Field(default_factory=VisibilityParameters)
 
 

@@ -8,13 +8,14 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mission.errors import MissionError
 from mission.plan_lines import Columns, LineParameters, PlanLine, columns_of, find_lines
 from mission.plan_polygon import OPEN, Loop, Segment, covered_share, crossed, room_loops
 from mission.roof import Roof
 from mission.visibility import Visibility
+from sim.parameters import Parameters
 
 Floats = NDArray[np.float64]
 
@@ -29,18 +30,22 @@ _BEFORE = 0.3
 """Overhead is looked this far before a wall: clear of the lintels in it [m]."""
 
 
-class WallParameters(BaseModel):
+class WallParameters(Parameters):
     """What a wall is, and where it goes on unseen."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    least_top: float = Field(default=1.8, gt=0, description="a wall without a ceiling is at least this high [m]")
-    doorway: float = Field(default=1.5, ge=0, description="a gap in a wall up to this wide is bridged [m]")
-    hidden_gap: float = Field(default=4.0, ge=0, description="bridged up to this if nobody looked through it [m]")
-    least_lintel: float = Field(default=1.8, gt=0, description="above the floor: lower it hangs on a wall [m]")
-    least_own_top: float = Field(default=2.0, gt=0, description="length of a low wall under the sky, no leaf's [m]")
-    least_roof: float = Field(default=1.0, gt=0, description="area of what a wall may end under, if lower [m2]")
-    widest_lintel: float = Field(default=2.5, gt=0, description="over a doorway: wider it is a beam [m]")
+    least_top: float = Field(
+        default=1.8, ge=0.5, le=20, description="a wall without a ceiling is at least this high [m]"
+    )
+    doorway: float = Field(default=1.5, ge=0, le=10, description="a gap in a wall up to this wide is bridged [m]")
+    hidden_gap: float = Field(
+        default=4.0, ge=0, le=50, description="bridged up to this if nobody looked through it [m]"
+    )
+    least_lintel: float = Field(default=1.8, ge=0.5, le=20, description="above the floor: lower it hangs on a wall [m]")
+    least_own_top: float = Field(
+        default=2.0, ge=0.1, le=20, description="length of a low wall under the sky, no leaf's [m]"
+    )
+    least_roof: float = Field(default=1.0, gt=0, le=100, description="area of what a wall may end under, if lower [m2]")
+    widest_lintel: float = Field(default=2.5, ge=0.5, le=20, description="over a doorway: wider it is a beam [m]")
     lines: LineParameters = Field(default_factory=LineParameters)
 
 

@@ -11,9 +11,10 @@ import cv2
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from sim.noise import normal_noise
+from sim.parameters import Parameters
 from sim.render import Depth, Renderer, View, looking_along
 from sim.render.materials import linear_from_srgb, materials_of, srgb_from_linear
 from sim.shading import Gloss, Image, Window, flash_light, seen_from_flash
@@ -41,10 +42,8 @@ _LEVELS = 2**12
 """Of the analogue-digital converter."""
 
 
-class CameraParameters(BaseModel):
+class CameraParameters(Parameters):
     """How the camera is used."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     width: int = Field(default=712, ge=16, le=2848, description="Picture width, upright [px]; the D90 has 2848.")
     height: int = Field(default=1072, ge=16, le=4288, description="Picture height [px]; the D90 has 4288.")
@@ -53,10 +52,10 @@ class CameraParameters(BaseModel):
     rise: float = Field(
         default=0.20, ge=0, le=1, description="Camera centre above the scanner's beams, on its axis [m]."
     )
-    ambient: float = Field(default=0.5, ge=0, description="Light in the room, relative to the flash's at 3 m.")
+    ambient: float = Field(default=0.5, ge=0, le=100, description="Light in the room, relative to the flash's at 3 m.")
     noise: bool = Field(default=True, description="Photon and read noise.")
     highlight_level: float = Field(
-        default=0.05, gt=0, description="Gloss, in parts of full scale, that counts as a highlight."
+        default=0.05, gt=0, le=1, description="Gloss, in parts of full scale, that counts as a highlight."
     )
 
     @property

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from sim.parameters import Parameters
 from sim.render.visibility import SHOWN, showing, visible_geoms
 
 # Makers' numbers: SCIP 2.0 manual of the URG-04LX, pages 5, 12, 21.
@@ -19,17 +20,17 @@ RESOLUTION = 0.001
 """Ranges come in whole millimetres [m]."""
 
 
-class HokuyoParameters(BaseModel):
+class HokuyoParameters(Parameters):
     """How the small laser is used."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
     noise: bool = Field(default=True, description="Range noise and rounding to 1 mm.")
-    range_min: float = Field(default=0.02, ge=0, description="[m] (SCIP manual)")
-    range_max: float = Field(default=5.6, gt=0, description="[m] (SCIP manual)")
-    noise_near: float = Field(default=0.01, ge=0, description="One sigma up to 1 m [m]: a third of the stated 30 mm.")
+    range_min: float = Field(default=0.02, ge=0, le=0.5, description="[m] (SCIP manual)")
+    range_max: float = Field(default=5.6, ge=1, le=60, description="[m] (SCIP manual)")
+    noise_near: float = Field(
+        default=0.01, ge=0, le=0.2, description="One sigma up to 1 m [m]: a third of the stated 30 mm."
+    )
     noise_far: float = Field(
-        default=0.01, ge=0, description="One sigma beyond 1 m, over range: a third of the stated 3 %."
+        default=0.01, ge=0, le=0.2, description="One sigma beyond 1 m, over range: a third of the stated 3 %."
     )
 
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from sim.parameters import Parameters
 from sim.rays import geom_name
 from sim.render.materials import materials_of, srgb_from_linear
 from sim.render.visibility import VISUAL_GROUPS
@@ -22,24 +23,23 @@ _STANDING = 0.7
 """Cosine between a contact's normal and the vertical from which on a wheel stands on what it touches."""
 
 
-class RobotParameters(BaseModel):
+class RobotParameters(Parameters):
     """How MoPAD drives and how well it knows it."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    max_speed: float = Field(0.3, gt=0, le=1.5, description="Guardian navigation: 0.1-0.3 m/s, at most 1.5 [m/s]")
-    max_turn_rate: float = Field(0.7, gt=0, le=1.0, description="Guardian: 0.7 rad/s [rad/s]")
-    max_acceleration: float = Field(0.5, gt=0, le=5, description="Guardian navigation: 0.5 m/s2 [m/s^2]")
-    max_turn_acceleration: float = Field(1.0, gt=0, le=10, description="so that it turns without a jerk [rad/s^2]")
-    wheel_radius: float = Field(0.18, gt=0, description="Guardian code: diameter 0.355-0.360 [m]")
+    max_speed: float = Field(0.3, ge=0.01, le=1.5, description="Guardian navigation: 0.1-0.3 m/s, at most 1.5 [m/s]")
+    max_turn_rate: float = Field(0.7, ge=0.01, le=1.0, description="Guardian: 0.7 rad/s [rad/s]")
+    max_acceleration: float = Field(0.5, ge=0.01, le=5, description="Guardian navigation: 0.5 m/s2 [m/s^2]")
+    max_turn_acceleration: float = Field(1.0, ge=0.01, le=10, description="so that it turns without a jerk [rad/s^2]")
+    wheel_radius: float = Field(0.18, ge=0.05, le=0.5, description="Guardian code: diameter 0.355-0.360 [m]")
     track_width: float = Field(
         0.46,
-        gt=0,
+        ge=0.1,
+        le=2,
         description="effective in odometry: 0.448 theoretical on tracks, 3 % more by slip (measured here) [m]",
     )
     encoder_scale_error: float = Field(0.01, ge=0, le=0.2, description="1 sigma of each side's rolling radius [1]")
     track_width_error: float = Field(0.02, ge=0, le=0.2, description="1 sigma: slip differs from floor to floor [1]")
-    control_period: float = Field(0.02, gt=0, le=0.2, description="of the speed ramp and the odometry [s]")
+    control_period: float = Field(0.02, ge=0.001, le=0.2, description="of the speed ramp and the odometry [s]")
     settling_time: float = Field(0.5, ge=0, le=10, description="standing still after being set down [s]")
 
 

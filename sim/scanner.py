@@ -9,10 +9,11 @@ from typing import Literal
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from sim.echo import PRECISION, RANGE_MAX, RANGE_MIN, REFLECTANCE_NOISE_DB, Receiver, receive
 from sim.panorama import cast_panorama
+from sim.parameters import Parameters
 from sim.render import Renderer
 from sim.render.materials import materials_of
 
@@ -52,16 +53,16 @@ PATTERNS: dict[str, Pattern] = {
 """Riegl's names give the step in millidegrees; draft has 0.2 deg, for tests."""
 
 
-class ScannerParameters(BaseModel):
+class ScannerParameters(Parameters):
     """How the scanner is used."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     pattern: Literal["panorama_40", "panorama_60", "draft"] = Field(default="panorama_60", description="grid of beams")
     noise: bool = Field(default=True, description="range and reflectance noise; off gives exact ranges")
     precision: float = Field(default=PRECISION, ge=0, le=0.1, description="range noise, one sigma [m] (data sheet)")
-    range_min: float = Field(default=RANGE_MIN, ge=0.1, description="nearest range measured [m] (HELIOS++)")
-    range_max: float = Field(default=RANGE_MAX, le=900, description="farthest range on a 90 % target [m] (data sheet)")
+    range_min: float = Field(default=RANGE_MIN, ge=0.1, le=5, description="nearest range measured [m] (HELIOS++)")
+    range_max: float = Field(
+        default=RANGE_MAX, ge=10, le=900, description="farthest range on a 90 % target [m] (data sheet)"
+    )
 
     @property
     def highest_elevation(self) -> float:

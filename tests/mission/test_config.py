@@ -2,12 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from mission.config import MissionConfig, read_config
 from mission.errors import UsageError
+
+SCHEMA = MissionConfig.model_json_schema()
+
+
+def numbers(model: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, list[Mapping[str, Any]]]]:
+    """Key and JSON schemas of every numeric parameter below a model; several numbers where it is a list."""
+    for name, field in model["properties"].items():
+        if "$ref" in field:
+            yield from numbers(SCHEMA["$defs"][field["$ref"].split("/")[-1]], f"{path}{name}.")
+        elif field["type"] in ("number", "integer"):
+            yield path + name, [field]
+        elif field["type"] == "array":
+            yield path + name, field.get("prefixItems") or [field["items"]]
+
+
+NUMBERS = {key: schemas for key, schemas in numbers(SCHEMA) if not key.startswith("detector.")}
+FLOATS = {key: schemas for key, schemas in NUMBERS.items() if schemas[0]["type"] == "number"}
 
 
 def test_without_file_and_settings_the_configuration_is_the_default() -> None:
@@ -35,6 +54,9 @@ def test_a_bare_word_is_a_string() -> None:
         ("detector.alpha1", "expected key=value"),
         ("scanner.noise.x=1", "scanner.noise"),
         ("scanner=1", "scanner = 1"),
+        ("scanner.range_max=0.5", "scanner.range_max = 0.5: input should be greater than or equal to 10"),
+        ("robot.wheel_radius=inf", "robot.wheel_radius = inf: input should be a finite number"),
+        ("registration.reaches=[0.5, -1]", "registration.reaches.1 = -1: input should be greater than 0"),
     ],
 )
 def test_a_wrong_setting_is_named_in_one_line(setting: str, said: str) -> None:
@@ -42,6 +64,21 @@ def test_a_wrong_setting_is_named_in_one_line(setting: str, said: str) -> None:
         read_config(None, [setting])
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("key", NUMBERS)
+def test_every_number_has_a_least_and_a_greatest_value(key: str) -> None:
+    for schema in NUMBERS[key]:
+        assert {"minimum", "exclusiveMinimum"} & set(schema) and {"maximum", "exclusiveMaximum"} & set(schema)
+
+
+@pytest.mark.parametrize("value", ["inf", "-inf", "nan"])
+@pytest.mark.parametrize("key", FLOATS)
+def test_a_number_that_is_not_finite_is_refused_everywhere(key: str, value: str) -> None:
+    count = len(FLOATS[key])
+    listed = f"[{', '.join([value] * count)}]" if key.endswith(("reaches", "recess")) else value
+    with pytest.raises(UsageError, match=f"{key}.* = {value}: input should be a finite number"):
+        read_config(None, [f"{key}={listed}"])
 
 
 def test_a_setting_below_a_value_is_refused() -> None:
