@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mission.following import Command, DrivingParameters, eased, follow_path, gap_to_body, remaining, restrained
 from mission.grid import Footprint
 from mission.localisation import readings_in_base
+from mission.rigid import inverted
 
 if TYPE_CHECKING:
     from sim.hokuyo import LaserScan
@@ -146,7 +147,7 @@ def _halt(robot: DrivenRobot, log: _Log, parameters: DrivingParameters) -> None:
         before = robot.odometry
         robot.step(0.0, 0.0, parameters.tick)
         log.look()
-        moved = np.linalg.inv(before) @ robot.odometry
+        moved = inverted(before) @ robot.odometry
         if max(np.hypot(*moved[:2, 3]), abs(moved[1, 0])) < STANDING * parameters.tick:
             return
 
@@ -182,7 +183,7 @@ class _Log:
         scans, pose, time = self._measure(), self._correction @ self._robot.odometry, self._robot.time
         if self._localise is not None and time - self._matched >= self._parameters.match_every - 1e-9:
             pose, self._matched = self._localise(scans, pose), time
-            self._correction = pose @ np.linalg.inv(self._robot.odometry)
+            self._correction = pose @ inverted(self._robot.odometry)
         self._times.append(round(time * 1e9))
         self._poses.append(pose)
         self._now = [(scan, pose) for scan in scans]

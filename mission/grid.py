@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from mission.rigid import transformed
 from sim.parameters import Parameters
 from sim.scanner import ScannerParameters
 
@@ -197,10 +198,7 @@ def with_laser(
     parameters = parameters or GridParameters()
     world_from_laser = world_from_base @ scan.base_from_laser
     ranges = np.where(np.isnan(scan.ranges), np.inf, scan.ranges)
-    near = ranges <= parameters.laser_hit_range
-    angles, radii = scan.angles[near], ranges[near]
-    hits_in_laser = np.stack([radii * np.cos(angles), radii * np.sin(angles), np.zeros_like(radii)], axis=1)
-    hits_in_world = hits_in_laser @ world_from_laser[:3, :3].T + world_from_laser[:3, 3]
+    hits_in_world = transformed(scan.points_in_base(up_to=parameters.laser_hit_range), world_from_base)
 
     centres = grid.centres().reshape(-1, 2)
     offsets = np.column_stack([centres, np.full(len(centres), world_from_laser[2, 3])]) - world_from_laser[:3, 3]

@@ -126,13 +126,7 @@ def localise(
 
 def readings_in_base(scans: Sequence[LaserScan], *, up_to: float = np.inf) -> NDArray[np.float64]:
     """(N, 2) readings of all scans up to a range, in the base frame [m]."""
-    points = [np.empty((0, 2))]
-    for scan in scans:
-        kept = scan.ranges <= up_to  # NaN compares false
-        angles, ranges = scan.angles[kept], scan.ranges[kept].astype(np.float64)
-        in_laser = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=1)
-        points.append(in_laser @ scan.base_from_laser[:2, :2].T + scan.base_from_laser[:2, 3])
-    return np.concatenate(points)
+    return np.concatenate([np.empty((0, 2)), *(scan.points_in_base(up_to=up_to)[:, :2] for scan in scans)])
 
 
 def _weights(residual: NDArray[np.float64], parameters: LocalisationParameters) -> NDArray[np.float64]:

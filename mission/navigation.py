@@ -18,6 +18,7 @@ from pydantic import Field
 from mission.following import DrivingParameters
 from mission.grid import Cell, Footprint, GridParameters, OccupancyGrid
 from mission.localisation import LocalisationParameters
+from mission.plan_polygon import within_polygon
 from sim.parameters import Parameters
 
 
@@ -122,7 +123,7 @@ def road_map(
         turns_at_start = bool(grid.clearance_at(start) >= turning)
     raster = _roomiest_points(grid, parameters.spacing, turning)
     if within is not None:
-        raster = raster[_inside(raster, within)]
+        raster = raster[within_polygon(raster, within)]
     points = np.concatenate([start[None], goals, raster, escape])
 
     usable = np.flatnonzero(grid.clearance_at(points) >= turning)
@@ -170,16 +171,6 @@ def _roomiest_points(grid: OccupancyGrid, spacing: float, needed: float) -> NDAr
     column = np.arange(squares.shape[1])[None, :] * side + best % side
     enough = padded[row, column] >= needed
     return grid.origin + (np.stack([column[enough], row[enough]], axis=-1) + 0.5) * grid.resolution
-
-
-def _inside(points: NDArray[np.float64], polygon: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(N,) which points lie within the polygon: a ray along +x crosses its sides an odd number of times."""
-    x, y = points[:, 0, None], points[:, 1, None]
-    (x0, y0), (x1, y1) = polygon.T, np.roll(polygon, -1, axis=0).T
-    spans = (y0 > y) != (y1 > y)
-    with np.errstate(divide="ignore", invalid="ignore"):  # level sides span no point
-        crossing = x0 + (y - y0) / (y1 - y0) * (x1 - x0)
-    return (spans & (crossing > x)).sum(axis=1) % 2 == 1
 
 
 def _way_out(

@@ -68,6 +68,17 @@ class _Cell:
         return bool(np.all(_cross(b - a, point - a) >= -1e-9))
 
 
+def within_polygon(points: NDArray[np.floating], polygon: Floats) -> NDArray[np.bool_]:
+    """(N,) which points (N, 2 or 3) lie within a polygon (P, 2) in plan: a ray along +x crosses its edges an odd number
+    of times."""
+    inside = np.zeros(len(points), bool)
+    x, y = points[:, 0], points[:, 1]
+    for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+        if ay != by:
+            inside ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) * ((bx - ax) / (by - ay)))
+    return inside
+
+
 def room_loops(lines: Sequence[PlanLine], segments: Sequence[Segment], scanners: Floats) -> list[Loop]:
     """Finds the outline of the room that the scanners (S, 2) stand in; the outer loop comes first, then its holes.
 

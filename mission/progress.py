@@ -5,12 +5,12 @@ from __future__ import annotations
 from types import TracebackType
 from typing import Self
 
-import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from mission.angles import degrees_text
 from mission.evaluation import DoorEvaluation
 from mission.events import (
     DoorsEvaluated,
@@ -123,14 +123,10 @@ def _row(evaluation: DoorEvaluation) -> list[str]:
         evaluation.door_id,
         door.state if door.kind == "single" else f"{door.state}, {door.kind}",
         f"{door.rectangle.width:.3f}x{door.rectangle.height:.3f}",
-        _degrees(door.opening_angle),
-        _degrees(evaluation.true_angle),
-        _degrees(evaluation.angle_error),
+        degrees_text(door.opening_angle, unit="°"),
+        degrees_text(evaluation.true_angle, unit="°"),
+        degrees_text(evaluation.angle_error, unit="°"),
         f"{areas.precision:.3f}" if areas else "-",
         f"{areas.recall:.3f}" if areas else "-",
         evaluation.true_name or "[red]false positive[/red]",
     ]
-
-
-def _degrees(angle: float | None) -> str:
-    return "-" if angle is None or np.isnan(angle) else f"{round(float(np.degrees(angle)), 1) + 0.0:.1f}°"

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from mission.angles import rounded_degrees
 from mission.evaluation import DoorEvaluation
 from mission.events import (
     Coloured,
@@ -170,8 +171,8 @@ def _door(evaluation: DoorEvaluation) -> dict[str, Any]:
         "corners": [[_rounded(x) for x in corner] for corner in evaluation.corners_in_world],
         "width": _rounded(door.rectangle.width),
         "height": _rounded(door.rectangle.height),
-        "opening_angle_deg": _degrees(door.opening_angle),
-        "leaf_angles_deg": [_degrees(leaf.opening_angle) for leaf in door.leaves],
+        "opening_angle_deg": rounded_degrees(door.opening_angle, 2),
+        "leaf_angles_deg": [rounded_degrees(leaf.opening_angle, 2) for leaf in door.leaves],
         "hinge": evaluation.hinge,
         "opens": evaluation.opens,
         "truth": _truth(evaluation),
@@ -183,8 +184,8 @@ def _truth(evaluation: DoorEvaluation) -> dict[str, Any] | None:
         return None
     return {
         "door": evaluation.true_name,
-        "angle_deg": _degrees(evaluation.true_angle),
-        "angle_error_deg": _degrees(evaluation.angle_error),
+        "angle_deg": rounded_degrees(evaluation.true_angle, 2),
+        "angle_error_deg": rounded_degrees(evaluation.angle_error, 2),
         "precision": _rounded(evaluation.overlap.precision),
         "recall": _rounded(evaluation.overlap.recall),
         "e_abs": _rounded(evaluation.overlap.absolute_error),
@@ -207,10 +208,6 @@ def _registration(event: Registered) -> dict[str, Any]:
 
 def _mean(values: list[float]) -> float | None:
     return _rounded(float(np.mean(values))) if values else None
-
-
-def _degrees(angle: float | None) -> float | None:
-    return None if angle is None or np.isnan(angle) else round(float(np.degrees(angle)), 2) + 0.0  # no "-0.0"
 
 
 def _rounded(value: float) -> float:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from mission.errors import MissionError
-from mission.plan_polygon import Loop
+from mission.plan_polygon import Loop, within_polygon
 from mission.samples import PosedSample, thinned
 from mission.visibility import Visibility, VisibilityParameters
 from mission.wall_finder import Outline, WallFinder, WallParameters, WallRectangle
@@ -51,9 +51,9 @@ class Structure:
 
     def interior(self, points: NDArray[np.floating]) -> NDArray[np.bool_]:
         """(N,) True for points (N, 2) or (N, 3) over the floor, and between floor and ceiling if they have a height."""
-        inside = _in_polygon(points, self.polygon)
+        inside = within_polygon(points, self.polygon)
         for hole in self.holes:
-            inside &= ~_in_polygon(points, hole)
+            inside &= ~within_polygon(points, hole)
         if points.shape[1] == 3:
             inside &= points[:, 2] > self.floor_height
             if self.ceiling_height is not None:
@@ -109,7 +109,7 @@ def _structure(floor: float, ceiling: float | None, outline: Outline) -> Structu
 def _covered(points: Floats, ceiling: float, polygon: Floats, parameters: StructureParameters) -> bool:
     """Whether a ceiling of that height is over the room, and not over the next one."""
     level = points[np.abs(points[:, 2] - ceiling) < 0.05]
-    area = np.count_nonzero(_in_polygon(level, polygon)) * parameters.spacing**2
+    area = np.count_nonzero(within_polygon(level, polygon)) * parameters.spacing**2
     return bool(area >= parameters.ceiling_share * _area(polygon))
 
 
@@ -155,16 +155,6 @@ def _level(heights: Floats, parameters: StructureParameters) -> float | None:
     for reach in (0.03, 0.015, 0.015):
         level = float(np.median(heights[np.abs(heights - level) < reach]))
     return level
-
-
-def _in_polygon(points: NDArray[np.floating], polygon: Floats) -> NDArray[np.bool_]:
-    """(N,) by counting crossings of the edges to the right of the point."""
-    inside = np.zeros(len(points), bool)
-    x, y = points[:, 0], points[:, 1]
-    for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        if ay != by:
-            inside ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) * ((bx - ax) / (by - ay)))
-    return inside
 
 
 def _area(polygon: Floats) -> float:

@@ -47,6 +47,13 @@ class LaserScan:
     time: int
     """Mission time of the sweep [ns]."""
 
+    def points_in_base(self, *, up_to: float = np.inf) -> NDArray[np.float64]:
+        """(N, 3) points of all returns up to a range, in the robot's frame [m]."""
+        kept = self.ranges <= up_to  # NaN compares false
+        angles, ranges = self.angles[kept], self.ranges[kept].astype(np.float64)
+        in_laser = np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.zeros_like(ranges)], axis=1)
+        return in_laser @ self.base_from_laser[:3, :3].T + self.base_from_laser[:3, 3]
+
 
 class Hokuyo:
     """A URG-04LX-UG01 in one world."""

@@ -10,6 +10,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
+import assets
 from sim.doors import Door, DoorTruth, find_doors, measure_door, put_doors
 from sim.errors import SimError
 from sim.leaves import bodies_below
@@ -18,7 +19,6 @@ from sim.start import freest_spot, pose_on_floor, require_surroundings
 
 log = logging.getLogger(__name__)
 
-ASSETS = Path(__file__).resolve().parent.parent / "assets"
 ROBOT_PREFIX = "mopad/"
 FOOTPRINT = (0.97, 0.57)
 """Length and width of MoPAD over everything: the chassis, and the outside of the tracks with 4 mm each side [m]."""
@@ -147,7 +147,7 @@ def _attach_robot(spec: mujoco.MjSpec) -> str:
     prefix = ROBOT_PREFIX
     while any(name.startswith(prefix) for name in taken):
         prefix = f"_{prefix}"
-    robot = mujoco.MjSpec.from_file(str(ASSETS / "mopad" / "mopad.xml"))
+    robot = mujoco.MjSpec.from_file(str(assets.FOLDER / "mopad" / "mopad.xml"))
     spec.attach(robot, prefix=prefix, frame=spec.worldbody.add_frame())
     return prefix
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.room import VoxelLabel
+from mission.angles import degrees_text
 
 if TYPE_CHECKING:
     from mission.evaluation import DoorEvaluation
@@ -163,17 +164,10 @@ def quads(corners: Sequence[NDArray[np.float64]]) -> tuple[NDArray[np.float64], 
     return np.concatenate([*corners]), triangles.reshape(-1, 3)
 
 
-def degrees(angle: float | None, *, digits: int = 1) -> str:
-    """An angle for people: "34.8", or "-" where there is none."""
-    if angle is None or not np.isfinite(angle):
-        return "-"
-    return f"{round(float(np.degrees(angle)), digits) + 0.0:.{digits}f}"  # + 0.0 makes 0.0 of -0.0
-
-
 def angle_label(evaluation: DoorEvaluation) -> str:
     """Estimate beside truth: "34.8 deg (joint 35.0)"."""
-    truth = "no such door" if evaluation.true_name is None else f"joint {degrees(evaluation.true_angle)}"
-    return f"{degrees(evaluation.door.opening_angle)} deg ({truth})"
+    truth = "no such door" if evaluation.true_name is None else f"joint {degrees_text(evaluation.true_angle)}"
+    return f"{degrees_text(evaluation.door.opening_angle)} deg ({truth})"
 
 
 def jpeg(image: NDArray[np.uint8], *, quality: int = DISPLAY_QUALITY) -> bytes:

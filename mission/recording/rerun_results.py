@@ -8,10 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 import rerun as rr
 
+from mission.angles import degrees_text
 from mission.evaluation import DoorEvaluation
 from mission.events import DoorsDetected, DoorsEvaluated, Event, MissionFinished, MissionStarted
 from mission.recording import entities
-from mission.recording.drawing import angle_label, degrees, palette
+from mission.recording.drawing import angle_label, palette
 from mission.report import Report
 
 AXIS = (150, 150, 150)
@@ -168,7 +169,7 @@ def _error_row(door: DoorEvaluation) -> tuple[str, float, str]:
         return door.door_id, 0.0, "false positive"
     if door.angle_error is None:
         return door.door_id, 0.0, "angle not seen"
-    return door.door_id, door.angle_error, f"{degrees(door.angle_error, digits=2)} deg"
+    return door.door_id, door.angle_error, f"{degrees_text(door.angle_error, digits=2)} deg"
 
 
 def _door_table(doors: Sequence[DoorEvaluation]) -> list[str]:
@@ -183,17 +184,19 @@ def _description(evaluation: DoorEvaluation) -> list[str]:
     door = evaluation.door
     size = f"{door.rectangle.width:.2f} x {door.rectangle.height:.2f}"
     deviation = (
-        f" ± {degrees(evaluation.opening_angle_std, digits=2)}" if np.isfinite(evaluation.opening_angle_std) else ""
+        f" ± {degrees_text(evaluation.opening_angle_std, digits=2)}"
+        if np.isfinite(evaluation.opening_angle_std)
+        else ""
     )
-    return [evaluation.door_id, door.kind, door.state, size, degrees(door.opening_angle) + deviation]
+    return [evaluation.door_id, door.kind, door.state, size, degrees_text(door.opening_angle) + deviation]
 
 
 def _comparison(evaluation: DoorEvaluation) -> list[str]:
     areas = evaluation.overlap
     if areas is None:
         return ["false positive", "-", "-", "-"]
-    error = degrees(evaluation.angle_error, digits=2)
-    return [degrees(evaluation.true_angle), error, f"{areas.precision:.3f}", f"{areas.recall:.3f}"]
+    error = degrees_text(evaluation.angle_error, digits=2)
+    return [degrees_text(evaluation.true_angle), error, f"{areas.precision:.3f}", f"{areas.recall:.3f}"]
 
 
 def _metrics(report: Report) -> list[str]:

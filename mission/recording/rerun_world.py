@@ -23,7 +23,7 @@ from mission.events import (
 from mission.recording import entities
 from mission.recording.drawing import TRUTH_COLOUR, WALL_COLOUR, display_colours, on_grid, outline, thin
 from mission.recording.entities import child
-from mission.rigid import inverted
+from mission.rigid import inverted, transformed
 
 PATH_COLOUR = (255, 120, 40)
 PLAN_COLOUR = (80, 200, 255)
@@ -167,10 +167,7 @@ class World:
         points = []
         for scan in (scan for scan in event.laser_scans if scan.time == event.laser_scans[-1].time):
             pose = event.world_from_base[min(int(np.searchsorted(event.times, scan.time)), len(event.times) - 1)]
-            hit = np.isfinite(scan.ranges)
-            ranges, angles = scan.ranges[hit], scan.angles[hit]
-            in_laser = np.stack([ranges * np.cos(angles), ranges * np.sin(angles), 0 * ranges, 1 + 0 * ranges])
-            points.append((pose @ scan.base_from_laser @ in_laser)[:3].T)
+            points.append(transformed(scan.points_in_base(), pose))
         self._rec.log(
             entities.LASERS, rr.Points3D(np.concatenate(points), colors=LASER_COLOUR, radii=rr.Radius.ui_points(1.5))
         )

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import sim.scene
 from mission.grid import Cell, Footprint, OccupancyGrid
+from sim.hokuyo import LaserScan
 from sim.robot import RobotParameters
 
 Rectangle = tuple[float, float, float, float]
@@ -41,7 +40,7 @@ def free_room(
 
 def laser_scan(
     world_from_base: NDArray[np.float64], obstacles: list[Rectangle], *, rear: bool = False, time: int = 0
-) -> Any:
+) -> LaserScan:
     """What a Hokuyo at the robot's front or rear measures of upright boxes, 240 deg, up to 5.6 m."""
     base_from_laser = pose(-0.45, 0, np.pi) if rear else pose(0.45, 0)
     base_from_laser[2, 3] = 0.4
@@ -56,7 +55,7 @@ def laser_scan(
         enter, leave = np.minimum(near, far).max(axis=1), np.maximum(near, far).min(axis=1)
         ranges = np.where((enter <= leave) & (enter > 0), np.minimum(ranges, enter), ranges)
     ranges[ranges > 5.6] = np.nan
-    return SimpleNamespace(base_from_laser=base_from_laser, angles=angles, ranges=ranges.astype(np.float32), time=time)
+    return LaserScan(base_from_laser, angles, ranges.astype(np.float32), time)
 
 
 class Unicycle:
@@ -90,7 +89,7 @@ class Unicycle:
         return self.touching
 
 
-def hokuyos(robot: Unicycle, obstacles: list[Rectangle]) -> Callable[[], list[Any]]:
+def hokuyos(robot: Unicycle, obstacles: list[Rectangle]) -> Callable[[], list[LaserScan]]:
     return lambda: [laser_scan(robot.true, obstacles, rear=rear) for rear in (False, True)]
 
 

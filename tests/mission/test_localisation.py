@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from mission.driving import drive
 from mission.localisation import LaserMap, laser_map, localise
+from sim.hokuyo import LaserScan
 from tests.mission.driving_world import FOOTPRINT, Rectangle, Unicycle, hokuyos, laser_scan, pose
 
 WALLS: list[Rectangle] = [
@@ -31,12 +32,12 @@ def scanned(walls: list[int]) -> LaserMap:
     return laser_map(np.concatenate(points), np.concatenate(normals), height=0.4)
 
 
-def noisy_scans(true: NDArray[np.float64], obstacles: list[Rectangle]) -> list[object]:
+def noisy_scans(true: NDArray[np.float64], obstacles: list[Rectangle]) -> list[LaserScan]:
     """Both Hokuyos with 1 % noise."""
     rng = np.random.default_rng(0)
     scans = [laser_scan(true, obstacles, rear=rear) for rear in (False, True)]
     for scan in scans:
-        scan.ranges *= (1 + 0.01 * rng.standard_normal(len(scan.ranges))).astype(np.float32)
+        scan.ranges[:] *= (1 + 0.01 * rng.standard_normal(len(scan.ranges))).astype(np.float32)
     return scans
 
 

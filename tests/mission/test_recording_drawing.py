@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 import pytest
 
+from mission.angles import degrees_text
 from mission.events import Drove
 from mission.recording.drawing import (
     angle_label,
-    degrees,
     display_colours,
     jpeg,
     on_grid,
@@ -74,7 +74,7 @@ def test_labels_put_the_estimate_beside_the_joint() -> None:
     ("angle", "words"), [(JOINT, "31.0"), (None, "-"), (float("nan"), "-"), (-1e-9, "0.0"), (-0.01, "-0.6")]
 )
 def test_angles_are_written_in_degrees(angle: float | None, words: str) -> None:
-    assert degrees(angle) == words
+    assert degrees_text(angle) == words
 
 
 def test_a_jpeg_keeps_red_red() -> None:

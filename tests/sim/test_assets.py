@@ -9,17 +9,17 @@ import mujoco
 import numpy as np
 import pytest
 
+import assets
 from sim.doors import true_doors
 from sim.robot import Robot, RobotParameters
 from sim.scene import load_scene
 
-ASSETS = Path(__file__).parents[2] / "assets"
-ROOM = ASSETS / "rooms" / "room.xml"
+ROOM = assets.FOLDER / "rooms" / "room.xml"
 
 
 @pytest.fixture(scope="module")
 def mopad() -> mujoco.MjModel:
-    return mujoco.MjModel.from_xml_path(str(ASSETS / "mopad" / "mopad.xml"))
+    return mujoco.MjModel.from_xml_path(str(assets.FOLDER / "mopad" / "mopad.xml"))
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.hokuyo import Hokuyo, HokuyoParameters
+from sim.hokuyo import Hokuyo, HokuyoParameters, LaserScan
 
 ORIGIN = np.eye(4)
 EXACT = HokuyoParameters(noise=False)
@@ -40,6 +40,15 @@ def test_it_measures_from_where_it_sits_on_the_robot(world):
     scan = sweep(world('<geom type="box" size="9 .1 .1" pos="0 3.1 .3"/>'), base=base, mount=mount)
     assert scan.ranges[340] == pytest.approx(2, abs=1e-6)
     assert scan.base_from_laser is mount
+
+
+def test_points_of_a_sweep_lie_where_the_robot_has_what_it_hit():
+    # The laser sits 0.45 m behind the base and looks backwards: 2 m ahead of it is x = -2.45, 1 m to its left y = -1.
+    backwards = np.array([[-1.0, 0, 0, -0.45], [0, -1, 0, 0], [0, 0, 1, 0.4], [0, 0, 0, 1]])
+    angles, ranges = np.radians([0.0, 45.0, 90.0]), np.array([2.0, np.nan, 1.0], np.float32)
+    scan = LaserScan(backwards, angles, ranges, time=0)
+    assert scan.points_in_base() == pytest.approx(np.array([[-2.45, 0, 0.4], [-0.45, -1, 0.4]]))
+    assert scan.points_in_base(up_to=1.5) == pytest.approx(np.array([[-0.45, -1, 0.4]]))
 
 
 def test_nothing_beyond_5_6_metres_returns(world):
