@@ -86,21 +86,9 @@ class VoxelModel:
     @property
     def coverage(self) -> float:
         """Share of the walls' area that is not Occluded."""
-        return self._seen(self.surfaces >= 0)
-
-    @property
-    def floor_coverage(self) -> float:
-        """Share of the floor's area that is not Occluded; what stands on it hides some for ever."""
-        return self._seen(self.surfaces == FLOOR)
-
-    @property
-    def ceiling_coverage(self) -> float:
-        """Share of the ceiling's area that is not Occluded; 1 where there is no ceiling."""
-        return self._seen(self.surfaces == CEILING)
-
-    def _seen(self, which: NDArray[np.bool_]) -> float:
-        areas = self.areas[which]
-        occluded = self.labels[which] == VoxelLabel.OCCLUDED
+        walls = self.surfaces >= 0
+        areas = self.areas[walls]
+        occluded = self.labels[walls] == VoxelLabel.OCCLUDED
         return 1.0 - float(areas[occluded].sum() / areas.sum()) if len(areas) else 1.0
 
 

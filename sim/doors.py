@@ -29,9 +29,6 @@ class LeafTruth:
 
     name: str
     """Of the body, else of the joint."""
-    joint_name: str
-    hinge_in_world: np.ndarray
-    """(2, 3) bottom and top of the hinge's axis at the leaf's edges [m]; for a slide, its first edge."""
     opening_angle: float
     """From closed [rad], at least 0; NaN for a sliding leaf."""
     opening: float
@@ -40,8 +37,6 @@ class LeafTruth:
     """(3,) horizontal unit vector towards which the free edge leaves the closed leaf's plane; for a slide, the way."""
     corners_in_world: np.ndarray
     """(4, 3) mid-plane of the leaf now: hinge bottom, free bottom, free top, hinge top [m]."""
-    angle_range: tuple[float, float]
-    """Openings that the joint allows [rad; m for a slide]; the lower is negative if it swings to both sides."""
 
 
 @dataclass(frozen=True)
@@ -176,13 +171,10 @@ def _measure_leaf(model: mujoco.MjModel, data: mujoco.MjData, one: ClosedLeaf) -
     corners = leaf.corners_at(value)
     change = value - one.closed
     if leaf.kind == "sliding":
-        way = leaf.axis * one.sign
-        return LeafTruth(*(leaf.name, leaf.joint_name, corners[[0, 3]], np.nan, abs(change), way, corners, one.reach))
+        return LeafTruth(leaf.name, np.nan, abs(change), leaf.axis * one.sign, corners)
     change = (change + np.pi) % (2 * np.pi) - np.pi
     swing = _opening_direction(one) * (-1.0 if change * one.sign < -_CLEARLY_OPEN else 1.0)
-    heights = corners[[0, 3], 2]
-    hinge = leaf.anchor + ((heights - leaf.anchor[2]) / leaf.axis[2])[:, None] * leaf.axis
-    return LeafTruth(leaf.name, leaf.joint_name, hinge, abs(change), np.nan, swing, corners, one.reach)
+    return LeafTruth(leaf.name, abs(change), np.nan, swing, corners)
 
 
 def _opening_direction(one: ClosedLeaf) -> np.ndarray:

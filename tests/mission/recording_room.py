@@ -130,13 +130,10 @@ def true_door(name: str, wall: Wall, *, angle: float = np.nan, way: float = np.n
     corners = wall.world_from_wall(np.array([[1, 0, 0], [1.9, 0, 0], [1.9, 2.1, 0], [1, 2.1, 0]], float))
     leaf = LeafTruth(
         name=name,
-        joint_name=f"{name} joint",
-        hinge_in_world=corners[[0, 3]],
         opening_angle=angle,
         opening=way,
         swing_normal=wall.normal,
         corners_in_world=corners,
-        angle_range=(0.0, 1.6),
     )
     kind = "hinged" if np.isnan(way) else "sliding"
     return DoorTruth(name, kind, (name,), corners, wall.normal, (leaf,))
