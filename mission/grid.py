@@ -41,7 +41,7 @@ class GridParameters(Parameters):
     """What counts as floor and as obstacle."""
 
     resolution: float = Field(default=0.05, ge=0.02, le=0.2, description="Side of a cell [m]")
-    lowest_obstacle: float = Field(
+    min_obstacle_height: float = Field(
         default=0.05, ge=0.02, le=0.15, description="Above the floor [m]: scanner noise is 3-5 mm"
     )
     robot_height: float = Field(
@@ -167,8 +167,8 @@ def grid_from_scans(
     points = _within_reach(np.asarray(points_in_world), scanners_in_world, floor_height, parameters)
     grid = _empty_grid(points, scanners_in_world, parameters)
     height = points[:, 2] - floor_height
-    floor = _count(grid, points[abs(height) < parameters.lowest_obstacle]) > 0
-    hits = _count(grid, points[height >= parameters.lowest_obstacle])
+    floor = _count(grid, points[abs(height) < parameters.min_obstacle_height]) > 0
+    hits = _count(grid, points[height >= parameters.min_obstacle_height])
     around = cv2.boxFilter(hits.astype(np.float32), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
     occupied = (hits > 0) & (around > parameters.points_per_obstacle - 0.5)
     floor, occupied = _closed(floor), _closed(occupied)
@@ -223,7 +223,7 @@ def _within_reach(
 ) -> NDArray[np.floating]:
     """Points between just under the floor and the robot's top, not too far from some scanner."""
     height = points[:, 2] - floor_height
-    points = points[(height > -parameters.lowest_obstacle) & (height < parameters.robot_height)]
+    points = points[(height > -parameters.min_obstacle_height) & (height < parameters.robot_height)]
     near = np.zeros(len(points), dtype=np.bool_)
     for scanner in scanners:
         near |= ((points[:, :2] - scanner[:2]) ** 2).sum(axis=1) < parameters.reach**2
@@ -265,7 +265,7 @@ def _shadowed(
     """
     height = origin[2] - floor_height
     blind = height / np.tan(-scanner.lowest_elevation)
-    blind = float(max(blind, np.sqrt(max(scanner.range_min**2 - height**2, 0.0))))
+    blind = float(max(blind, np.sqrt(max(scanner.min_range**2 - height**2, 0.0))))
     azimuths = np.radians(np.arange(0, 360, 2) + 1.0)
     radii = np.arange(grid.resolution, blind + 0.4, grid.resolution)
     rays = origin[:2] + radii[None, :, None] * np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)[:, None]

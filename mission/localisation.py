@@ -42,7 +42,7 @@ class LocalisationParameters(Parameters):
         default=0.05, ge=0.001, le=1.0, description="Of the odometry since the last match, 1 sigma [m]"
     )
     turn_drift: float = Field(default=0.03, ge=0.001, le=1.0, description="Likewise of its heading [rad]")
-    fitness: float = Field(default=0.5, ge=0.0, le=1.0, description="Share of readings that must find a partner")
+    min_fitness: float = Field(default=0.5, ge=0.0, le=1.0, description="Share of readings that must find a partner")
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +116,7 @@ def localise(
         information = prior + np.einsum("n,ni,nj->ij", weights, slopes, slopes)
         pull = prior @ (pose - start) + np.einsum("n,ni,n->i", weights, slopes, residual)
         pose = pose - np.linalg.solve(information, pull)
-    if fitness < parameters.fitness:
+    if fitness < parameters.min_fitness:
         return world_from_base
     moved = world_from_base.copy()
     moved[:2, :2] = _rotation(pose[2] - start[2]) @ world_from_base[:2, :2]

@@ -34,7 +34,7 @@ class NavigationParameters(Parameters):
     spacing: float = Field(
         default=0.25, ge=0.1, le=1.0, description="One turning point in each square of this side [m]"
     )
-    longest_leg: float = Field(
+    max_leg: float = Field(
         default=2.0, ge=0.5, le=5.0, description="Of the road map [m]; ways are straightened afterwards"
     )
     turn_cost: float = Field(default=0.2, ge=0.0, le=5.0, description="Price of a turning point in metres of way")
@@ -127,7 +127,7 @@ def road_map(
     points = np.concatenate([start[None], goals, raster, escape])
 
     usable = np.flatnonzero(grid.clearance_at(points) >= turning)
-    first, second, clear = _legs(grid, points, usable, longest=parameters.longest_leg, needed=needed)
+    first, second, clear = _legs(grid, points, usable, longest=parameters.max_leg, needed=needed)
     if len(escape):
         first, second = np.append(first, 0), np.append(second, len(points) - 1)
         clear = np.append(clear, np.float32(needed))

@@ -21,12 +21,10 @@ class LineParameters(Parameters):
     softness: float = Field(
         default=0.006, ge=0.001, le=0.1, description="Tukey width of the last fit: posters do not pull [m]"
     )
-    least_points: int = Field(
-        default=150, ge=10, le=100_000, description="of a line: 3 cm apart, half a metre by 0.3 m"
-    )
+    min_points: int = Field(default=150, ge=10, le=100_000, description="of a line: 3 cm apart, half a metre by 0.3 m")
     column: float = Field(default=0.1, ge=0.02, le=1, description="width of the columns that a wall is judged by [m]")
     top_band: float = Field(default=0.15, ge=0.01, le=2, description="a wall reaches this near to the ceiling [m]")
-    least_length: float = Field(default=0.3, ge=0.05, le=10, description="of a wall [m]")
+    min_length: float = Field(default=0.3, ge=0.05, le=10, description="of a wall [m]")
     recess: tuple[Annotated[float, Field(ge=0, le=5)], Annotated[float, Field(ge=0, le=5)]] = Field(
         default=(0.2, 0.8), description="a surface with a like one this far behind it is furniture, not wall [m]"
     )
@@ -92,7 +90,7 @@ def _directions(headings: Floats, parameters: LineParameters) -> list[float]:
     counts = fine.reshape(360, 10).sum(axis=1)
     smooth = np.sum([np.roll(counts, k) for k in (-2, -1, 0, 1, 2)], axis=0)
     found: list[float] = []
-    while smooth.max() >= parameters.least_points:
+    while smooth.max() >= parameters.min_points:
         peak = int(np.argmax(smooth))
         tenth = peak * 10 + 5
         for _ in range(5):  # mean shift over a window of 5 deg
@@ -107,7 +105,7 @@ def _directions(headings: Floats, parameters: LineParameters) -> list[float]:
 
 def _strongest_offset(plan: Floats, heading: float, middle: Floats, parameters: LineParameters) -> PlanLine | None:
     """The line of a heading with most points; None if none has enough."""
-    if len(plan) < parameters.least_points:
+    if len(plan) < parameters.min_points:
         return None
     normal = np.array([np.cos(heading), np.sin(heading)])
     offsets = (plan[:, 0] - middle[0]) * normal[0] + (plan[:, 1] - middle[1]) * normal[1]
@@ -116,7 +114,7 @@ def _strongest_offset(plan: Floats, heading: float, middle: Floats, parameters: 
     counts = np.bincount(((offsets - low) / width).astype(int) + 1)
     smooth = np.convolve(counts, np.ones(3), mode="same")
     peak = int(np.argmax(smooth))
-    if smooth[peak] < parameters.least_points:
+    if smooth[peak] < parameters.min_points:
         return None
     middle_of_bin = low + (peak - 0.5) * width
     return PlanLine(normal, float(middle_of_bin + middle @ normal))

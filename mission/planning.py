@@ -59,7 +59,7 @@ class ScanCandidate:
     gain: float
     """Area of occluded structure that would come into view [m2]."""
     quality: float
-    """Area of wall that no scan has yet seen less obliquely than `oblique_deg`, and this one would [m2]."""
+    """Area of wall that no scan has yet seen less obliquely than `oblique_incidence`, and this one would [m2]."""
     doorway: float
     """Area of openings down to the floor seen from a side, left or right, from which no scan has seen them [m2].
 

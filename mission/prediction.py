@@ -8,6 +8,7 @@ the sides of the room's polygon.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,9 +32,11 @@ class ScannerView(Parameters):
     """What of the scanner's view counts, and how finely it is predicted."""
 
     max_range: float = Field(default=10.0, gt=1.0, le=100.0, description="Beams are too far apart beyond [m]")
-    max_incidence_deg: float = Field(default=75.0, gt=0.0, lt=90.0, description="Flatter beams see little")
+    max_incidence: float = Field(
+        default=math.radians(75), gt=0.0, lt=math.pi / 2, description="Flatter beams see little [rad]"
+    )
     cube: float = Field(default=0.1, ge=0.02, le=0.5, description="Side of the cubes that points stand for [m]")
-    bin_deg: float = Field(default=1.5, ge=0.2, le=5.0, description="Width of the finest depth map's bins")
+    bin_width: float = Field(default=math.radians(1.5), ge=0.003, le=0.1, description="Of the finest depth map [rad]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,8 +105,8 @@ def prospect(
     distance = np.sqrt(_dot(towards, towards))
     towards /= np.maximum(distance, 1e-9)[:, None]
     cosine = _dot(towards, cells.normals)
-    seen = (distance >= scanner.range_min) & (distance <= min(view.max_range, scanner.range_max))
-    seen &= cosine >= np.cos(np.radians(view.max_incidence_deg))
+    seen = (distance >= scanner.min_range) & (distance <= min(view.max_range, scanner.max_range))
+    seen &= cosine >= np.cos(view.max_incidence)
     seen &= -towards[:, 2] >= np.sin(scanner.lowest_elevation)
     seen &= -towards[:, 2] <= np.sin(scanner.highest_elevation)
     at = np.flatnonzero(seen)
@@ -120,7 +123,7 @@ def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
 def _behind_cubes(cells: NDArray[np.float64], cubes: NDArray[np.float64], view: ScannerView) -> NDArray[np.bool_]:
     """(M,) which (M, 3) cells have one of (K, 3) cubes in front, all as offsets from the scanner."""
     azimuth, polar, depth, level_distance = _spherical(cubes)
-    finest = np.radians(view.bin_deg)
+    finest = view.bin_width
     level = np.ceil(np.log2(_DIAGONAL * view.cube / np.maximum(level_distance * finest, 1e-6)))
     level = np.clip(level, 0, _LEVELS - 1).astype(np.intp)
     cell_azimuth, cell_polar, distance, _ = _spherical(cells)

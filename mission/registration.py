@@ -5,6 +5,7 @@ Written with numpy and a k-d tree rather than Open3D, whose parallel sums on two
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,7 +29,7 @@ class RegistrationParameters(Parameters):
     points: int = Field(
         default=6000, ge=500, le=1_000_000, description="points of the scan that look for a partner in the map"
     )
-    maximum_range: float = Field(default=15.0, gt=2, le=900, description="of these points from the scanner [m]")
+    max_range: float = Field(default=15.0, gt=2, le=900, description="of these points from the scanner [m]")
     reaches: tuple[Annotated[float, Field(gt=0, le=10)], ...] = Field(
         default=(1.0, 0.5, 0.25, 0.12, 0.06, 0.04),
         min_length=1,
@@ -36,18 +37,16 @@ class RegistrationParameters(Parameters):
         description="distance to a partner, round by round [m]",
     )
     iterations: int = Field(default=10, ge=1, le=1000, description="at most, a round")
-    minimum_fitness: float = Field(
+    min_fitness: float = Field(
         default=0.35, ge=0, le=1, description="share of the points with a partner in the last round"
     )
-    maximum_rmse: float = Field(
-        default=0.010, gt=0, le=0.2, description="point-to-plane residual in the last round [m]"
-    )
-    minimum_constraint: float = Field(
+    max_rmse: float = Field(default=0.010, gt=0, le=0.2, description="point-to-plane residual in the last round [m]")
+    min_constraint: float = Field(
         default=0.01, ge=0, le=1, description="share of the partners that must hold the least held direction"
     )
-    maximum_shift: float = Field(default=0.6, gt=0, le=10, description="of the guess by the registration [m]")
-    maximum_turn: float = Field(
-        default=float(np.deg2rad(12)), gt=0, le=np.pi, description="of the guess by the registration [rad]"
+    max_shift: float = Field(default=0.6, gt=0, le=10, description="of the guess by the registration [m]")
+    max_turn: float = Field(
+        default=math.radians(12), gt=0, le=math.pi, description="of the guess by the registration [rad]"
     )
     spacing: float = Field(default=0.03, ge=0.005, le=0.2, description="of the map's points [m]")
 
@@ -134,7 +133,7 @@ def _balanced(sample: ScanSample, parameters: RegistrationParameters) -> NDArray
 
     The directions are the 6 faces of a cube, 3 x 3 cells each, so that a small wall weighs as much as the floor.
     """
-    near = np.sum(sample.points**2, axis=1) < parameters.maximum_range**2
+    near = np.sum(sample.points**2, axis=1) < parameters.max_range**2
     usable = np.flatnonzero(near & np.isfinite(sample.normals[:, 0]))
     normals = sample.normals[usable]
     axis = np.argmax(np.abs(normals), axis=1)
@@ -211,11 +210,11 @@ def _judged(guess: Pose, pose: Pose, partners: _Partners, asked: int, limits: Re
     held = float(np.linalg.eigvalsh(spread)[0])
     shift, turn = float(np.sqrt(np.sum((pose - guess)[:3, 3] ** 2))), angle_between(guess, pose)
     objections = [
-        (fitness < limits.minimum_fitness, f"only {fitness:.0%} of the points meet the map"),
-        (rmse > limits.maximum_rmse, f"residual of {rmse * 1e3:.1f} mm"),
-        (held < limits.minimum_constraint, "the surfaces leave a direction free"),
-        (shift > limits.maximum_shift, f"{shift:.2f} m away from the guess"),
-        (turn > limits.maximum_turn, f"turned {np.rad2deg(turn):.1f} deg from the guess"),
+        (fitness < limits.min_fitness, f"only {fitness:.0%} of the points meet the map"),
+        (rmse > limits.max_rmse, f"residual of {rmse * 1e3:.1f} mm"),
+        (held < limits.min_constraint, "the surfaces leave a direction free"),
+        (shift > limits.max_shift, f"{shift:.2f} m away from the guess"),
+        (turn > limits.max_turn, f"turned {np.rad2deg(turn):.1f} deg from the guess"),
     ]
     reasons = [text for failed, text in objections if failed]
     if reasons:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -23,18 +24,16 @@ class SampleParameters(Parameters):
     """How a scan is thinned and where its normals come from."""
 
     step: float = Field(
-        default=float(np.deg2rad(0.24)), ge=0.0005, le=0.02, description="pitch of the coarse range image [rad]"
+        default=math.radians(0.24), ge=0.0005, le=0.02, description="pitch of the coarse range image [rad]"
     )
-    window: float = Field(
-        default=float(np.deg2rad(1.7)), ge=0.005, le=0.1, description="side of a normal's window [rad]"
-    )
+    window: float = Field(default=math.radians(1.7), ge=0.005, le=0.1, description="side of a normal's window [rad]")
     spacing: float = Field(default=0.03, ge=0.005, le=0.2, description="one point is kept in a cube of this side [m]")
-    maximum_range: float = Field(default=30.0, gt=2, le=900, description="points beyond are not of this room [m]")
+    max_range: float = Field(default=30.0, gt=2, le=900, description="points beyond are not of this room [m]")
     roughness: float = Field(
         default=0.008, ge=0.001, le=0.1, description="largest residual (1 sigma) of a surface called flat [m]"
     )
-    maximum_incidence: float = Field(
-        default=float(np.deg2rad(82)), gt=0, lt=np.pi / 2, description="beyond it a normal is not trusted [rad]"
+    max_incidence: float = Field(
+        default=math.radians(82), gt=0, lt=math.pi / 2, description="beyond it a normal is not trusted [rad]"
     )
 
 
@@ -91,7 +90,7 @@ def sample_scan(scan: Scan, parameters: SampleParameters | None = None) -> ScanS
     ranges = np.ascontiguousarray(scan.ranges[::rows, ::columns])
 
     smooth, normals = _planes(ranges, elevations, azimuths, parameters)
-    seen = np.isfinite(ranges) & (ranges < parameters.maximum_range)
+    seen = np.isfinite(ranges) & (ranges < parameters.max_range)
     flat = np.isfinite(smooth)[seen]
     directions = _directions(elevations, azimuths)[seen]
     points = directions * np.where(flat, smooth[seen], ranges[seen])[:, None]
@@ -171,7 +170,7 @@ def _planes(
     with np.errstate(divide="ignore", invalid="ignore"):
         smooth = 1 / fitted
         flat = whole & (sigma * smooth**2 < parameters.roughness) & (np.abs(smooth - ranges) < 4 * parameters.roughness)
-        flat &= fitted > np.cos(parameters.maximum_incidence) * length
+        flat &= fitted > np.cos(parameters.max_incidence) * length
         x, y, z = -slopes / length
     c, s = np.cos(azimuths), np.sin(azimuths)
     normals = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)

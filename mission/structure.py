@@ -25,8 +25,8 @@ class StructureParameters(Parameters):
 
     reach: float = Field(default=15.0, ge=3, le=200, description="floor and walls lie within this of some scanner [m]")
     spacing: float = Field(default=0.03, ge=0.005, le=0.2, description="of the points that are looked at [m]")
-    least_level: float = Field(default=1.0, gt=0, le=100, description="least area of floor or ceiling [m2]")
-    least_height: float = Field(default=1.8, ge=0.5, le=20, description="of a ceiling above the floor [m]")
+    min_level_area: float = Field(default=1.0, gt=0, le=100, description="least area of floor or ceiling [m2]")
+    min_height: float = Field(default=1.8, ge=0.5, le=20, description="of a ceiling above the floor [m]")
     ceiling_share: float = Field(default=0.2, ge=0, le=1, description="of the room's area that a ceiling shows")
     walls: WallParameters = Field(default_factory=WallParameters)
     visibility: VisibilityParameters = Field(default_factory=VisibilityParameters)
@@ -136,7 +136,7 @@ def _floor(points: Floats, normals: Floats, scanners: Floats, parameters: Struct
 def _ceiling(
     points: Floats, normals: Floats, floor: float, scanners: Floats, parameters: StructureParameters
 ) -> float | None:
-    over = points[:, 2] > max(floor + parameters.least_height, scanners[:, 2].max() + 0.3)
+    over = points[:, 2] > max(floor + parameters.min_height, scanners[:, 2].max() + 0.3)
     return _level(points[(normals[:, 2] < -0.95) & over, 2], parameters)
 
 
@@ -149,7 +149,7 @@ def _level(heights: Floats, parameters: StructureParameters) -> float | None:
     counts = np.bincount(((heights - low) / width).astype(int))
     smooth = np.convolve(counts, np.ones(3), mode="same")
     peak = int(np.argmax(smooth))
-    if smooth[peak] * parameters.spacing**2 < parameters.least_level:
+    if smooth[peak] * parameters.spacing**2 < parameters.min_level_area:
         return None
     level = low + (peak + 0.5) * width
     for reach in (0.03, 0.015, 0.015):

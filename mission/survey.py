@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Protocol
@@ -19,13 +20,17 @@ from sim.scanner import ScannerParameters
 class SurveyParameters(Parameters):
     """What counts as seen, and as seen well."""
 
-    oblique_deg: float = Field(default=65.0, gt=0.0, lt=90.0, description="Incidence beyond which a view is poor")
-    aside_deg: float = Field(default=20.0, ge=0.0, lt=90.0, description="Bearing from which a doorway's side is seen")
-    same_view_deg: float = Field(
-        default=25.0,
+    oblique_incidence: float = Field(
+        default=math.radians(65), gt=0.0, lt=math.pi / 2, description="Beyond it a view is poor [rad]"
+    )
+    aside_bearing: float = Field(
+        default=math.radians(20), ge=0.0, lt=math.pi / 2, description="From here on a doorway's side is seen [rad]"
+    )
+    same_view_angle: float = Field(
+        default=math.radians(25),
         ge=0.0,
-        le=90.0,
-        description="What a scan failed to see is not expected from so near its direction",
+        le=math.pi / 2,
+        description="What a scan failed to see is not expected from so near its direction [rad]",
     )
     view: ScannerView = ScannerView()
 
@@ -118,14 +123,14 @@ class Survey:
 
     def _well(self, view: Prospect) -> NDArray[np.bool_]:
         """(M,) cells seen at a good angle."""
-        return view.seen & (view.cosine >= np.cos(np.radians(self._parameters.oblique_deg)))
+        return view.seen & (view.cosine >= np.cos(self._parameters.oblique_incidence))
 
     def _columns_seen(self, view: Prospect, side: int) -> NDArray[np.bool_]:
         """(C,) doorway columns half seen from well to one side: 1 is anticlockwise of the normal, -1 clockwise."""
         normal, towards = self._cells.normals[self._doorways], view.towards[self._doorways]
         across = normal[:, 0] * towards[:, 1] - normal[:, 1] * towards[:, 0]
         bearing = np.arctan2(across, normal[:, 0] * towards[:, 0] + normal[:, 1] * towards[:, 1])
-        seen = view.seen[self._doorways] & (side * bearing > np.radians(self._parameters.aside_deg))
+        seen = view.seen[self._doorways] & (side * bearing > self._parameters.aside_bearing)
         return (
             np.bincount(self._column[seen], self._areas[self._doorways][seen], len(self._columns)) >= self._columns / 2
         )
@@ -135,7 +140,7 @@ class Survey:
 
         They are behind something that the points do not show, such as the back of a cabinet against the wall.
         """
-        same = np.cos(np.radians(self._parameters.same_view_deg))
+        same = np.cos(self._parameters.same_view_angle)
         return self._any(
             earlier.seen & ((earlier.towards * view.towards).sum(axis=1) > same) & self._occluded
             for earlier in self._earlier

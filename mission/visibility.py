@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -20,11 +21,11 @@ Mask = NDArray[np.bool_]
 class VisibilityParameters(Parameters):
     """When a beam counts as having passed a place."""
 
-    maximum_incidence: float = Field(
-        default=float(np.deg2rad(75)), gt=0, lt=np.pi / 2, description="flatter beams may get lost on a surface [rad]"
+    max_incidence: float = Field(
+        default=math.radians(75), gt=0, lt=math.pi / 2, description="flatter beams may get lost on a surface [rad]"
     )
     shadow: float = Field(
-        default=float(np.deg2rad(2)), ge=0.002, le=0.5, description="grid of the directions with something near [rad]"
+        default=math.radians(2), ge=0.002, le=0.5, description="grid of the directions with something near [rad]"
     )
 
 
@@ -74,7 +75,7 @@ class Visibility:
     ) -> None:
         self.scans = tuple(scans)
         self.parameters = parameters or VisibilityParameters()
-        self._nearest = scanner.range_min
+        self._nearest = scanner.min_range
         self._shadows = [_near_directions(scan, scans, self._nearest, self.parameters) for scan in scans]
 
     def looked_through(
@@ -96,7 +97,7 @@ class Visibility:
             towards = scan.scanner_in_world - places_in_world
             cosine = np.abs(np.sum(towards * normals_in_world, axis=1)) / np.maximum(sight.distance, 1e-9)
             passed[number] = sight.measured > sight.distance + behind / np.maximum(cosine, 1e-3)
-            steep = cosine > np.cos(self.parameters.maximum_incidence)
+            steep = cosine > np.cos(self.parameters.max_incidence)
             void = self._void(number, places_in_world, sight) & steep
             if void.any():
                 void[void] = self._free_near(number, places_in_world[void])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -36,10 +37,10 @@ class VoxelParameters(Parameters):
     floor_clearance: float = Field(
         default=0.05, ge=0, le=0.5, description="below it points are floor or sill, not wall [m]"
     )
-    maximum_incidence: float = Field(
-        default=float(np.deg2rad(78)),
+    max_incidence: float = Field(
+        default=math.radians(78),
         gt=0,
-        lt=np.pi / 2,
+        lt=math.pi / 2,
         description="seen flatter only, a wall's points are too far apart to show what is there [rad]",
     )
     level_reach: float = Field(default=0.08, ge=0.01, le=0.5, description="points this near are floor or ceiling [m]")
@@ -260,7 +261,7 @@ def _filled(
     if abs(patch.normal[2]) < 0.5:
         beams = scanners[near] - points[near]
         steepness = np.abs(beams @ patch.normal) / np.sqrt(np.sum(beams**2, axis=1))
-        grazing = steepness < np.cos(parameters.maximum_incidence)
+        grazing = steepness < np.cos(parameters.max_incidence)
     occupied, met = np.zeros((rows, columns), bool), np.zeros((rows, columns), bool)
     occupied[tuple(cell[:, ~grazing])] = True
     met[tuple(cell)] = True

@@ -33,19 +33,21 @@ _BEFORE = 0.3
 class WallParameters(Parameters):
     """What a wall is, and where it goes on unseen."""
 
-    least_top: float = Field(
-        default=1.8, ge=0.5, le=20, description="a wall without a ceiling is at least this high [m]"
-    )
+    min_top: float = Field(default=1.8, ge=0.5, le=20, description="a wall without a ceiling is at least this high [m]")
     doorway: float = Field(default=1.5, ge=0, le=10, description="a gap in a wall up to this wide is bridged [m]")
     hidden_gap: float = Field(
         default=4.0, ge=0, le=50, description="bridged up to this if nobody looked through it [m]"
     )
-    least_lintel: float = Field(default=1.8, ge=0.5, le=20, description="above the floor: lower it hangs on a wall [m]")
-    least_own_top: float = Field(
+    min_lintel_height: float = Field(
+        default=1.8, ge=0.5, le=20, description="above the floor: lower it hangs on a wall [m]"
+    )
+    min_own_top: float = Field(
         default=2.0, ge=0.1, le=20, description="length of a low wall under the sky, no leaf's [m]"
     )
-    least_roof: float = Field(default=1.0, gt=0, le=100, description="area of what a wall may end under, if lower [m2]")
-    widest_lintel: float = Field(default=2.5, ge=0.5, le=20, description="over a doorway: wider it is a beam [m]")
+    min_roof_area: float = Field(
+        default=1.0, gt=0, le=100, description="area of what a wall may end under, if lower [m2]"
+    )
+    max_lintel_width: float = Field(default=2.5, ge=0.5, le=20, description="over a doorway: wider it is a beam [m]")
     lines: LineParameters = Field(default_factory=LineParameters)
 
 
@@ -97,7 +99,7 @@ class WallFinder:
         self.visibility, self.parameters = visibility, parameters
         self.scanners = np.array([scan.scanner_in_world[:2] for scan in visibility.scans])
         vertical = (np.abs(normals[:, 2]) < 0.15) & (points[:, 2] > floor + 0.1)
-        self.roof = Roof(points, normals, lowest=floor + parameters.least_top, least_area=parameters.least_roof)
+        self.roof = Roof(points, normals, lowest=floor + parameters.min_top, least_area=parameters.min_roof_area)
         self.lines = find_lines(points[vertical, :2], normals[vertical, :2], parameters.lines)
 
     def outline(self, ceiling: float | None) -> Outline:
@@ -108,7 +110,7 @@ class WallFinder:
         """
         heights = (self.floor + 0.03, np.inf if ceiling is None else ceiling - 0.03)
         surfaces = [columns_of(line, self.points, self.normals, heights, self.parameters.lines) for line in self.lines]
-        top = ceiling if ceiling is not None else _common_top(surfaces, self.floor + self.parameters.least_top)
+        top = ceiling if ceiling is not None else _common_top(surfaces, self.floor + self.parameters.min_top)
         ends = [top if ceiling is not None else self._own_top(columns, top) for columns in surfaces]
         reaching = [self._reaching(line, s, t) for line, s, t in zip(self.lines, surfaces, ends, strict=True)]
         reaching = self._set_back(reaching)
@@ -133,8 +135,8 @@ class WallFinder:
 
     def _own_top(self, columns: Columns, usual: float) -> float:
         """Where the walls on a line end that no ceiling ends, if enough of them end there, and lower than usual [m]."""
-        least = self.parameters.least_own_top / self.parameters.lines.column
-        tops = columns.tops[(columns.tops > self.floor + self.parameters.least_top) & ~columns.recessed]
+        least = self.parameters.min_own_top / self.parameters.lines.column
+        tops = columns.tops[(columns.tops > self.floor + self.parameters.min_top) & ~columns.recessed]
         common = [top for top in tops if np.count_nonzero(np.abs(tops - top) < 0.05) > least]
         return float(min(max(common, default=usual), usual))
 
@@ -146,8 +148,8 @@ class WallFinder:
         tops = np.minimum(self.roof.height_over(before), top)
         columns = columns.chosen(columns.tops > tops - self.parameters.lines.top_band)
         hanging = self._free_below(line, columns)
-        lintel = hanging & (columns.bottoms > self.floor + self.parameters.least_lintel)
-        widest = self.parameters.widest_lintel / self.parameters.lines.column
+        lintel = hanging & (columns.bottoms > self.floor + self.parameters.min_lintel_height)
+        widest = self.parameters.max_lintel_width / self.parameters.lines.column
         between_walls = np.cumsum(~lintel)[lintel]  # a column that is missing does not hold a lintel
         for run in np.split(np.flatnonzero(lintel), np.flatnonzero(np.diff(between_walls)) + 1):
             lintel[run] = len(run) == 0 or np.ptp(columns.numbers[run]) < widest
@@ -176,7 +178,7 @@ class WallFinder:
 
     def _segments(self, surfaces: Sequence[Columns], top: float) -> list[Segment]:
         """Stretches of columns, with the gaps bridged that doors, windows and furniture may make."""
-        least = int(round(self.parameters.lines.least_length / self.parameters.lines.column))
+        least = int(round(self.parameters.lines.min_length / self.parameters.lines.column))
         found = []
         for number, columns in enumerate(surfaces):
             runs = _runs(columns, partial(self._goes_on, number, top))
@@ -243,7 +245,7 @@ class WallFinder:
     def _is_wall(self, number: int, a: Floats, b: Floats, columns: Columns) -> bool:
         """Whether enough of it was seen; the rest may be hidden."""
         pieces = [Segment(number, low, high) for low, high in zip(columns.lows, columns.highs, strict=True)]
-        length, least = float(np.hypot(*(b - a))), self.parameters.lines.least_length
+        length, least = float(np.hypot(*(b - a))), self.parameters.lines.min_length
         return length >= least and covered_share(self.lines[number], a, b, pieces) * length > 0.5 * least
 
     def _rectangle(self, line: PlanLine, a: Floats, b: Floats, top: float) -> WallRectangle:

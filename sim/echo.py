@@ -23,11 +23,11 @@ WORST_PRECISION = 4.0
 """Largest factor on the precision: 8 to 12 mm is what users report from hard places (field notes of VZ-400 users)."""
 REFLECTANCE_NOISE_DB = 0.7
 # ---- Its reach.
-RANGE_MIN = 1.5
+MIN_RANGE = 1.5
 """[m] (HELIOS++ data/scanners_tls.xml)"""
-RANGE_MAX = 600.0
+MAX_RANGE = 600.0
 """[m] on a target of 90 % reflectance, long-range mode; falls with the root of the signal, to 280 m at 20 %."""
-RANGE_MAX_REFLECTANCE = 0.9
+MAX_RANGE_REFLECTANCE = 0.9
 
 _BAND = 32
 """Rows of a scan worked on at a time, so that they stay in the processor's cache."""
@@ -41,9 +41,9 @@ class Receiver:
     """Range noise, one sigma [m]; 0 with a `reflectance_noise` of 0 switches all noise off."""
     reflectance_noise: float
     """[dB]"""
-    range_min: float
+    min_range: float
     """[m]"""
-    range_max: float
+    max_range: float
     """[m]"""
 
 
@@ -115,7 +115,7 @@ def _detect(ranges: NDArray[np.float32], reflectance: NDArray[np.float32], recei
         noise[1] *= np.float32(receiver.reflectance_noise)
         ranges += noise[0]
         reflectance += noise[1]
-    reach = amplitude * np.float32(receiver.range_max / np.sqrt(RANGE_MAX_REFLECTANCE))
-    lost = (ranges < receiver.range_min) | (ranges > reach)
+    reach = amplitude * np.float32(receiver.max_range / np.sqrt(MAX_RANGE_REFLECTANCE))
+    lost = (ranges < receiver.min_range) | (ranges > reach)
     ranges[lost] = np.nan
     reflectance[lost] = np.nan

@@ -24,8 +24,8 @@ class HokuyoParameters(Parameters):
     """How the small laser is used."""
 
     noise: bool = Field(default=True, description="Range noise and rounding to 1 mm.")
-    range_min: float = Field(default=0.02, ge=0, le=0.5, description="[m] (SCIP manual)")
-    range_max: float = Field(default=5.6, ge=1, le=60, description="[m] (SCIP manual)")
+    min_range: float = Field(default=0.02, ge=0, le=0.5, description="[m] (SCIP manual)")
+    max_range: float = Field(default=5.6, ge=1, le=60, description="[m] (SCIP manual)")
     noise_near: float = Field(
         default=0.01, ge=0, le=0.2, description="One sigma up to 1 m [m]: a third of the stated 30 mm."
     )
@@ -102,7 +102,7 @@ class Hokuyo:
         if self.parameters.noise:
             sigma = np.maximum(self.parameters.noise_near, self.parameters.noise_far * ranges)
             ranges = np.rint((ranges + sigma * rng.standard_normal(len(ranges))) / RESOLUTION) * RESOLUTION
-        ranges[(ranges < self.parameters.range_min) | (ranges > self.parameters.range_max)] = np.nan
+        ranges[(ranges < self.parameters.min_range) | (ranges > self.parameters.max_range)] = np.nan
         return LaserScan(base_from_laser, self.angles, ranges.astype(np.float32), time)
 
     def _cast(self, data: mujoco.MjData, world_from_laser: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -114,7 +114,7 @@ class Hokuyo:
         groups = np.zeros(mujoco.mjNGROUP, np.uint8)
         groups[SHOWN] = 1
         hit, ranges = np.empty(count, np.int32), np.empty(count)
-        reach = 2 * self.parameters.range_max
+        reach = 2 * self.parameters.max_range
         with showing(self._model, self._visible):  # the only way to hide several bodies and glass from a ray
             mujoco.mj_multiRay(
                 self._model, data, origin, beams_in_world, groups, True, -1, hit, ranges, None, count, reach

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from sim.echo import PRECISION, RANGE_MAX, RANGE_MIN, REFLECTANCE_NOISE_DB, Receiver, receive
+from sim.echo import MAX_RANGE, MIN_RANGE, PRECISION, REFLECTANCE_NOISE_DB, Receiver, receive
 from sim.panorama import cast_panorama
 from sim.parameters import Parameters
 from sim.render import Renderer
@@ -59,9 +59,9 @@ class ScannerParameters(Parameters):
     pattern: Literal["panorama_40", "panorama_60", "draft"] = Field(default="panorama_60", description="grid of beams")
     noise: bool = Field(default=True, description="range and reflectance noise; off gives exact ranges")
     precision: float = Field(default=PRECISION, ge=0, le=0.1, description="range noise, one sigma [m] (data sheet)")
-    range_min: float = Field(default=RANGE_MIN, ge=0.1, le=5, description="nearest range measured [m] (HELIOS++)")
-    range_max: float = Field(
-        default=RANGE_MAX, ge=10, le=900, description="farthest range on a 90 % target [m] (data sheet)"
+    min_range: float = Field(default=MIN_RANGE, ge=0.1, le=5, description="nearest range measured [m] (HELIOS++)")
+    max_range: float = Field(
+        default=MAX_RANGE, ge=10, le=900, description="farthest range on a 90 % target [m] (data sheet)"
     )
 
     @property
@@ -122,8 +122,8 @@ class Scanner:
         self._receiver = Receiver(
             precision=self.parameters.precision if self.parameters.noise else 0.0,
             reflectance_noise=REFLECTANCE_NOISE_DB if self.parameters.noise else 0.0,
-            range_min=self.parameters.range_min,
-            range_max=self.parameters.range_max,
+            min_range=self.parameters.min_range,
+            max_range=self.parameters.max_range,
         )
 
     def scan(self, data: mujoco.MjData, world_from_scanner: NDArray[np.float64], rng: np.random.Generator) -> Scan:

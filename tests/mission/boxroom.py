@@ -77,7 +77,7 @@ def scan(
     step_deg: float = 0.5,
     noise: float = 0.0,
     seed: int = 0,
-    minimum_range: float = 1.5,
+    min_range: float = 1.5,
 ) -> Scan:
     """The range image of a full turn, +60 to -40 deg, with range noise [m]."""
     elevations = np.deg2rad(np.arange(60 - step_deg / 2, -40, -step_deg))
@@ -90,7 +90,7 @@ def scan(
         ranges = np.minimum(ranges, _ranges_to(b, world_from_scanner[:3, 3], d))
     ranges = ranges.reshape(e.shape)
     ranges += noise * np.random.default_rng(seed).standard_normal(ranges.shape)
-    ranges[(ranges < minimum_range) | (ranges > 600)] = np.nan
+    ranges[(ranges < min_range) | (ranges > 600)] = np.nan
     return Scan(elevations, azimuths, ranges.astype(np.float32), np.zeros(ranges.shape, np.float32), 0.0)
 
 

@@ -104,8 +104,8 @@ def test_an_unknown_configuration_key_is_refused(refused) -> None:
 
 
 def test_a_parameter_out_of_bounds_is_refused_with_the_bound(refused) -> None:
-    line = refused("room.xml", "--set", "scanner.range_max=0.5")
-    assert "scanner.range_max = 0.5: input should be greater than or equal to 10" in line
+    line = refused("room.xml", "--set", "scanner.max_range=0.5")
+    assert "scanner.max_range = 0.5: input should be greater than or equal to 10" in line
 
 
 def test_an_unknown_metric_is_refused(refused) -> None:

@@ -54,7 +54,7 @@ def test_a_bare_word_is_a_string() -> None:
         ("detector.alpha1", "expected key=value"),
         ("scanner.noise.x=1", "scanner.noise"),
         ("scanner=1", "scanner = 1"),
-        ("scanner.range_max=0.5", "scanner.range_max = 0.5: input should be greater than or equal to 10"),
+        ("scanner.max_range=0.5", "scanner.max_range = 0.5: input should be greater than or equal to 10"),
         ("robot.wheel_radius=inf", "robot.wheel_radius = inf: input should be a finite number"),
         ("registration.reaches=[0.5, -1]", "registration.reaches.1 = -1: input should be greater than 0"),
     ],
@@ -96,3 +96,8 @@ def test_a_file_that_is_not_toml_is_named(tmp_path: Path) -> None:
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"No such file or directory: .*absent\.toml"):
         read_config(tmp_path / "absent.toml")
+
+
+def test_every_angle_is_in_radians_and_every_limit_has_the_same_prefix() -> None:
+    odd = ("_deg", "maximum_", "minimum_", "least_", "largest_", "smallest_", "longest_", "lowest_", "_min", "_max")
+    assert [key for key in NUMBERS if any(word in key for word in odd)] == []

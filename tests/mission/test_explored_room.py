@@ -24,7 +24,7 @@ def test_every_stage_believes_in_the_scanner_that_scans(monkeypatch: pytest.Monk
             return _Anything()
 
         monkeypatch.setattr(mission.explored_room, stage, noted)
-    scanner = ScannerParameters(range_min=0.7)
+    scanner = ScannerParameters(min_range=0.7)
     room = ExploredRoom(1, FOOTPRINT, MissionConfig(scanner=scanner), samples=[scan((1.0, 0.0, 0.0))])
     structure = room.structure()
     voxels, grid = room.voxels(structure), room.grid(structure)

@@ -88,14 +88,14 @@ def test_the_blind_disc_is_as_wide_as_the_least_range_of_the_scanner() -> None:
     # clear what lies within. Of a scanner that measures from 1.5 m on, it should have begun at 1.43 m.
     floor = sheet((-4, 4), (-4, 4), 0.0)
     floor = floor[np.hypot(floor[:, 0], floor[:, 1]) > 2.75]
-    for range_min, expected in ((3.0, Cell.FREE), (1.5, Cell.UNKNOWN)):
+    for min_range, expected in ((3.0, Cell.FREE), (1.5, Cell.UNKNOWN)):
         grid = grid_from_scans(
             floor,
             SCANNER,
             floor_height=0.0,
             footprint=FOOTPRINT,
             lasers=both_lasers([]),
-            scanner=ScannerParameters(range_min=range_min),
+            scanner=ScannerParameters(min_range=min_range),
         )
         assert state(grid, 1.0, 0.0) == expected
 

@@ -11,11 +11,17 @@ from tests.mission.voxel_room import ROOM, box_points, room_voxels
 NO_OBSTACLES = Obstacles(cubes=np.empty((0, 3)), walls=np.empty((0, 2)))
 
 
-def sees(cell: tuple[float, float, float], normal: tuple[float, float, float], **scanner: float) -> bool:
-    """Whether a scanner at the origin, with some parameters of its own, sees one cell in the open."""
+def sees(
+    cell: tuple[float, float, float],
+    normal: tuple[float, float, float],
+    *,
+    scanner: ScannerParameters | None = None,
+    view: ScannerView | None = None,
+) -> bool:
+    """Whether a scanner at the origin sees one cell in the open."""
     cells = Cells(np.array([cell]), np.array([normal]))
-    parameters = ScannerParameters.model_validate(scanner)
-    return bool(prospect(np.zeros(3), cells, NO_OBSTACLES, scanner=parameters, view=ScannerView()).seen[0])
+    scanner, view = scanner or ScannerParameters(), view or ScannerView()
+    return bool(prospect(np.zeros(3), cells, NO_OBSTACLES, scanner=scanner, view=view).seen[0])
 
 
 def test_cells_are_seen_within_range_field_of_view_and_incidence_only() -> None:
@@ -33,8 +39,11 @@ def test_cells_are_seen_within_range_field_of_view_and_incidence_only() -> None:
 
 def test_the_ranges_of_the_scanner_are_those_that_the_prediction_believes() -> None:
     towards_x = (-1.0, 0.0, 0.0)
-    assert sees((1.4, 0, 0), towards_x, range_min=1.3) and not sees((1.6, 0, 0), towards_x, range_min=1.7)
-    assert sees((9.5, 0, 0), towards_x, range_max=9.7) and not sees((9.9, 0, 0), towards_x, range_max=9.7)
+    near, late = ScannerParameters(min_range=1.3), ScannerParameters(min_range=1.7)
+    assert sees((1.4, 0, 0), towards_x, scanner=near) and not sees((1.6, 0, 0), towards_x, scanner=late)
+    short, patient = ScannerParameters(max_range=12), ScannerView(max_range=20)
+    assert sees((11.5, 0, 0), towards_x, scanner=short, view=patient)
+    assert not sees((12.5, 0, 0), towards_x, scanner=short, view=patient)
 
 
 def test_furniture_hides_the_cells_behind_it_and_no_others() -> None:

@@ -37,14 +37,14 @@ def test_a_near_thing_shadows_a_cell_on_either_side_of_it_also_across_the_seam(a
     assert not shadowed(-2.1 * step) and not shadowed(2.1 * step)
 
 
-@pytest.mark.parametrize(("range_min", "passed"), [(1.5, True), (2.5, False), (0.3, True)])
+@pytest.mark.parametrize(("min_range", "passed"), [(1.5, True), (2.5, False), (0.3, True)])
 def test_a_beam_without_return_tells_nothing_of_places_nearer_than_the_scanner_measures(
-    range_min: float, passed: bool
+    min_range: float, passed: bool
 ) -> None:
     # Open ground all round: at the scanner's height nothing comes back from anywhere. The place is 2 m away.
     world_from_scanner = boxroom.pose(0, 0)
     ground = [boxroom.box((-30, 30), (-30, 30), (-0.2, 0))]
     posed = place(sample_scan(boxroom.scan(ground, world_from_scanner)), world_from_scanner)
     spot, normal = world_from_scanner[:3, 3] + [[2.0, 0.0, 0.0]], np.array([[-1.0, 0.0, 0.0]])
-    visibility = Visibility([posed], ScannerParameters(range_min=range_min))
+    visibility = Visibility([posed], ScannerParameters(min_range=min_range))
     assert visibility.looked_through(spot, normal, behind=0.2).tolist() == [[passed]]

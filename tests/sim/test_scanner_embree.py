@@ -56,5 +56,5 @@ def test_ranges_agree_with_embree(world: Callable, renderer_of: Callable[..., Re
     both = scan.hits & np.isfinite(true)
     assert both.mean() > 0.5
     assert (np.abs(scan.ranges[both] - true[both]) < 1e-4).mean() > 0.99
-    measurable = np.isfinite(true) & (true > scanner.parameters.range_min)
+    measurable = np.isfinite(true) & (true > scanner.parameters.min_range)
     assert (measurable == scan.hits).mean() > 0.999
