@@ -31,7 +31,7 @@ _STEEPEST = float(np.tan(np.deg2rad(80)))
 
 
 def colour_scan(scan: Scan, photos: Sequence[Photo], world_from_scanner: Pose) -> View:
-    """Gives each returned point the colour of the photograph that sees it best.
+    """Give each returned point the colour of the photograph that sees it best.
 
     The best photograph is the one nearest in azimuth (of several, the one with the point nearest to its optical axis).
     The camera sits above the scanner, so it does not see all that the scanner sees: a depth buffer of the scan's own
@@ -100,7 +100,7 @@ def _sectors(scan: Scan, photos: Sequence[Photo]) -> list[tuple[NDArray[np.intp]
 def _paint_sector(
     scan: Scan, photos: Sequence[Photo], columns: NDArray[np.intp], colours: NDArray[np.uint8], coloured: Mask
 ) -> None:
-    """Colours the points of some columns from the photographs that look there, in place."""
+    """Colour the points of some columns from the photographs that look there, in place."""
     best = np.full((len(scan.elevations), len(columns)), np.inf, np.float32)
     for photo in photos:
         _paint(scan, photo, columns, best, colours, coloured)
@@ -114,7 +114,7 @@ def _paint(
     colours: NDArray[np.uint8],
     coloured: Mask,
 ) -> None:
-    """Colours the points of some columns that the photo sees closer to its axis than `best` (E, C), in place."""
+    """Colour the points of some columns that the photo sees closer to its axis than `best` (E, C), in place."""
     camera_from_scanner = inverted(photo.scanner_from_camera)
     x, y, depth = (_coordinate(scan, camera_from_scanner, columns, axis) for axis in range(3))
     height, width = photo.image.shape[:2]

@@ -58,7 +58,7 @@ class PlanLine:
 
 
 def find_lines(plan: Floats, normals: Floats, parameters: LineParameters) -> list[PlanLine]:
-    """Finds lines on which many points lie that face the same way, the richest direction first.
+    """Find lines on which many points lie that face the same way, the richest direction first.
 
     Args:
         plan: (N, 2) points on vertical surfaces, evenly spread [m].
@@ -166,7 +166,7 @@ class Columns:
 def columns_of(
     line: PlanLine, points: Floats, normals: Floats, heights: tuple[float, float], parameters: LineParameters
 ) -> Columns:
-    """Divides the surface on a line into columns.
+    """Divide the surface on a line into columns.
 
     Args:
         line: Where.

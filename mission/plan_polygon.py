@@ -80,7 +80,7 @@ def within_polygon(points: NDArray[np.floating], polygon: Floats) -> NDArray[np.
 
 
 def room_loops(lines: Sequence[PlanLine], segments: Sequence[Segment], scanners: Floats) -> list[Loop]:
-    """Finds the outline of the room that the scanners (S, 2) stand in; the outer loop comes first, then its holes.
+    """Find the outline of the room that the scanners (S, 2) stand in; the outer loop comes first, then its holes.
 
     The lines cut the plane into cells. A cell is inside if the wall segments wind round its centre by more than half a
     turn (generalised winding number, Jacobson et al., SIGGRAPH 2013): 1 in a closed room, 0 outside; where a wall is

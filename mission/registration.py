@@ -78,7 +78,7 @@ class Registrar:
         self._map = _Map(np.zeros((0, 3)), np.zeros((0, 3)))
 
     def register(self, sample: ScanSample, guess_world_from_scanner: Pose) -> Registration:
-        """Finds a scan's pose; an accepted scan joins the map, the first one as it is guessed."""
+        """Find a scan's pose; an accepted scan joins the map, the first one as it is guessed."""
         if len(self._map.points) == 0:
             registration = Registration(guess_world_from_scanner, 1.0, 0.0, True, "the first scan starts the map")
         else:

@@ -71,7 +71,7 @@ class PosedSample:
 
 
 def place(sample: ScanSample, world_from_scanner: Pose) -> PosedSample:
-    """Puts a sample where its scan was taken."""
+    """Put a sample where its scan was taken."""
     return PosedSample(
         sample=sample,
         world_from_scanner=world_from_scanner,
@@ -81,7 +81,7 @@ def place(sample: ScanSample, world_from_scanner: Pose) -> PosedSample:
 
 
 def sample_scan(scan: Scan, parameters: SampleParameters | None = None) -> ScanSample:
-    """Thins a scan for registration, structure and voxels."""
+    """Thin a scan for registration, structure and voxels."""
     parameters = parameters or SampleParameters()
     rows = _stride(scan.elevations, parameters.step)
     columns = _stride(scan.azimuths, parameters.step)

@@ -67,7 +67,7 @@ def find_structure(
     *,
     scanner: ScannerParameters | None = None,
 ) -> Structure:
-    """Finds floor, ceiling and walls of the room that the scans were taken in.
+    """Find floor, ceiling and walls of the room that the scans were taken in.
 
     A wall is a vertical surface that reaches the ceiling (the walls' common top where there is none), that a scanner
     sees with no other wall before it, and that has no like surface close behind it; so cabinets, door leaves, posters,

@@ -46,7 +46,7 @@ class Sight:
 
 
 def look(scan: PosedSample, places_in_world: NDArray[np.floating]) -> Sight:
-    """Looks a scan's range image up in the direction of places (M, 3); the nearest beam answers."""
+    """Look a scan's range image up in the direction of places (M, 3); the nearest beam answers."""
     sample = scan.sample
     distance, row, column = _beams(scan, places_in_world)
     in_view = (row >= 0) & (row < len(sample.elevations)) & (column < len(sample.azimuths))
@@ -81,7 +81,7 @@ class Visibility:
     def looked_through(
         self, places_in_world: NDArray[np.floating], normals_in_world: NDArray[np.floating], *, behind: float
     ) -> Mask:
-        """Tells which scans looked through places on surfaces, and met nothing until well behind the surface.
+        """Tell which scans looked through places on surfaces, and met nothing until well behind the surface.
 
         Args:
             places_in_world: (M, 3) [m].

@@ -100,7 +100,7 @@ def label_voxels(
     *,
     scanner: ScannerParameters | None = None,
 ) -> VoxelModel:
-    """Labels the voxels of a room from all scans taken in it.
+    """Label the voxels of a room from all scans taken in it.
 
     Args:
         structure: Its walls, floor and ceiling.

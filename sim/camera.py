@@ -98,7 +98,7 @@ class Camera:
     """
 
     def __init__(self, renderer: Renderer, parameters: CameraParameters | None = None) -> None:
-        """Takes a camera into use.
+        """Take a camera into use.
 
         Args:
             renderer: of the world; what it hides, the camera does not see.
@@ -112,7 +112,7 @@ class Camera:
     def photograph(
         self, data: mujoco.MjData, world_from_scanner: NDArray[np.float64], rng: np.random.Generator
     ) -> tuple[Photo, ...]:
-        """Photographs once all round, anticlockwise from the scanner's x axis, all with one exposure.
+        """Photograph once all round, anticlockwise from the scanner's x axis, all with one exposure.
 
         Args:
             data: state of the world.
@@ -157,7 +157,7 @@ class Camera:
         return math.ceil(focal_x * abs(FLASH[0]) / _NEAREST) + 1, math.ceil(focal_y * abs(FLASH[1]) / _NEAREST) + 1
 
     def _shade(self, albedo: NDArray[np.uint8], lens: Depth, flash: Depth) -> _Exposure:
-        """Lights a rendered shot; pixel by pixel, so that it can be done in any thread."""
+        """Light a rendered shot; pixel by pixel, so that it can be done in any thread."""
         renderer, window = self._renderer, self._window
         scale, offset = np.float32(renderer.inverse_depth_scale), np.float32(renderer.inverse_depth_offset)
         inverse_depth = lens.raw * scale + offset

@@ -125,7 +125,7 @@ def _grid(model: mujoco.MjModel, leaf: Leaf) -> list[float]:
 
 
 def _oriented(model: mujoco.MjModel, leaf: Leaf, closed: float) -> ClosedLeaf:
-    """Adds which way the leaf opens, and how far, from the joint's range."""
+    """Add which way the leaf opens, and how far, from the joint's range."""
     full = np.pi if leaf.kind == "hinged" else 2.0
     low, high = (-full, full)
     if model.jnt_limited[leaf.joint]:

@@ -72,7 +72,7 @@ def true_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[DoorTruth, .
 
 
 def find_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Door, ...]:
-    """Finds the doors of any scene from its geometry; names and joint zeros mean nothing.
+    """Find the doors of any scene from its geometry; names and joint zeros mean nothing.
 
     A leaf is a slab of a door's size (see `sim.leaves`). It is a door's if at some joint position it stands on the
     floor in an opening of the static geometry that is passable behind it: that position is "closed". A refrigerator's
@@ -111,7 +111,7 @@ def measure_door(model: mujoco.MjModel, data: mujoco.MjData, door: Door) -> Door
 
 
 def put_doors(model: mujoco.MjModel, data: mujoco.MjData, doors: Sequence[Door], openings: Mapping[str, float]) -> None:
-    """Opens doors as asked and wedges all of them where they then stand.
+    """Open doors as asked and wedge all of them where they then stand.
 
     A wedge is friction in the joint, a spring at rest and a servo that holds: a scan takes a minute, and what it saw
     must still be so in the next one. The robot can push a wedged leaf aside.

@@ -54,7 +54,7 @@ def receive(
     receiver: Receiver,
     rng: np.random.Generator,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Turns the exact picture into what the instrument reports.
+    """Turn the exact picture into what the instrument reports.
 
     Args:
         inverse_range: (E, A) of what each beam meets [1/m], above 0; columns all round at equal steps.
@@ -106,7 +106,7 @@ def _incidence_tan2(
 
 
 def _detect(ranges: NDArray[np.float32], reflectance: NDArray[np.float32], receiver: Receiver, seed: int) -> None:
-    """Adds the noise and drops what is too near, too far or too dark, in place."""
+    """Add the noise and drop what is too near, too far or too dark, in place."""
     amplitude = np.exp(reflectance * np.float32(np.log(10) / 20))  # root of the signal
     if receiver.precision or receiver.reflectance_noise:
         noise = normal_noise(seed, (2, *ranges.shape))

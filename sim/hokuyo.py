@@ -69,7 +69,7 @@ class Hokuyo:
         hidden_bodies: Collection[int] = (),
         parameters: HokuyoParameters | None = None,
     ) -> None:
-        """Takes a laser into use.
+        """Take a laser into use.
 
         Args:
             model: the world.
@@ -89,7 +89,7 @@ class Hokuyo:
         rng: np.random.Generator,
         time: int,
     ) -> LaserScan:
-        """Sweeps once; glass is let through.
+        """Sweep once; glass is let through.
 
         Args:
             data: state of the world, after `mj_kinematics` or more.

@@ -108,7 +108,7 @@ def _leaf(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> Leaf | None
 def _slab(
     model: mujoco.MjModel, data: mujoco.MjData, body: int, anchor: np.ndarray, slide: np.ndarray | None
 ) -> Slab | None:
-    """Measures the flat part of a leaf from its large parallel faces, so that handles and hinges do not count."""
+    """Measure the flat part of a leaf from its large parallel faces, so that handles and hinges do not count."""
     geoms = np.flatnonzero(np.isin(model.geom_bodyid, sorted(bodies_below(model, body))))
     per_geom = [corners for corners in triangles_in_world(model, data, geoms.tolist()) if len(corners)]
     if not per_geom:

@@ -12,7 +12,7 @@ _LEVELS = 2**16
 
 
 def normal_noise(seed: int, shape: tuple[int, ...]) -> NDArray[np.float32]:
-    """Draws standard normal numbers, five times as fast as numpy's generator.
+    """Draw standard normal numbers, five times as fast as numpy's generator.
 
     A sensor needs tens of millions of them a scan. They are drawn from the 65536 equal quantiles of the normal
     distribution, so that they end at 4.3 sigma.

@@ -44,7 +44,7 @@ class Fit:
 
 
 def fit(rays: Rays, corners: np.ndarray) -> Fit:
-    """Judges a rectangle (4, 3) in world (first edge bottom, second edge bottom, second top, first top)."""
+    """Judge a rectangle (4, 3) in world (first edge bottom, second edge bottom, second top, first top)."""
     along, up, normal = _axes(corners)
     width, height = _size(corners)
     sides = [0.0, 0.0]

@@ -33,7 +33,7 @@ def cast_panorama(
     azimuths: NDArray[np.float64],
     value_of_geom: NDArray[np.float32],
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Casts a grid of beams from one point.
+    """Cast a grid of beams from one point.
 
     Inverse depth is linear over a plane, and the raw depth buffer is affine in it. So interpolating the raw buffer
     bilinearly is exact on planes, and it is turned into metres at the beams only.

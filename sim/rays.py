@@ -53,7 +53,7 @@ class Rays:
         self._model.geom_group[:] = np.where(ignored, _IGNORED_GROUP, np.minimum(model.geom_group, _IGNORED_GROUP - 1))
 
     def cast(self, origin: np.ndarray, directions: np.ndarray, cutoff: float = 1e3) -> Hits:
-        """Casts rays from one point.
+        """Cast rays from one point.
 
         Args:
             origin: (3,) in world [m].

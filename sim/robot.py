@@ -106,7 +106,7 @@ class Robot:
         return float(self._data.time - self._started + self._waited)
 
     def step(self, v: float, w: float, duration: float) -> None:
-        """Holds a command for a while; speeds ramp within the limits of acceleration.
+        """Hold a command for a while; speeds ramp within the limits of acceleration.
 
         Args:
             v: forward speed [m/s], cut to the robot's limit.
@@ -131,12 +131,12 @@ class Robot:
         mujoco.mj_forward(self._model, self._data)
 
     def settle(self) -> None:
-        """Stops and stands until the robot rests on its wheels."""
+        """Stop and stand until the robot rests on its wheels."""
         self._speed[:] = 0.0
         self.step(0.0, 0.0, self.parameters.settling_time)
 
     def wait(self, duration: float) -> None:
-        """Stands still with the brakes on while a sensor measures: the clock runs, nothing moves [s]."""
+        """Stand still with the brakes on while a sensor measures: the clock runs, nothing moves [s]."""
         self._waited += duration
 
     def set_down(self, world_from_base: np.ndarray) -> None:
@@ -189,7 +189,7 @@ class Robot:
         return self._data.qpos[self._encoders].copy()
 
     def _reckon(self, turned: np.ndarray) -> None:
-        """Moves the odometry along the arc that the wheels tell of (2,) [rad]."""
+        """Move the odometry along the arc that the wheels tell of (2,) [rad]."""
         left, right = turned * self._radii
         turn = (right - left) / self._track_width
         arc = upright_pose(np.zeros(3), turn)

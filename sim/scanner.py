@@ -110,7 +110,7 @@ class Scanner:
     """A VZ-400 in one world."""
 
     def __init__(self, renderer: Renderer, parameters: ScannerParameters | None = None) -> None:
-        """Takes a scanner into use.
+        """Take a scanner into use.
 
         Args:
             renderer: of the world; what it hides, the scanner does not see.
@@ -127,7 +127,7 @@ class Scanner:
         )
 
     def scan(self, data: mujoco.MjData, world_from_scanner: NDArray[np.float64], rng: np.random.Generator) -> Scan:
-        """Scans once all round.
+        """Scan once all round.
 
         Args:
             data: state of the world, after `mj_kinematics` or more; it stands still during the scan.

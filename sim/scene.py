@@ -62,7 +62,7 @@ class Scene:
 
 
 def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, keyframe: str | None = None) -> Scene:
-    """Loads any MJCF, puts MoPAD into it and sets the doors.
+    """Load any MJCF, put MoPAD into it and set the doors.
 
     The state is the keyframe's of that name, else the first keyframe, else qpos0. MoPAD starts at a site named
     `start`, else at the freest spot inside a room; a scene that already holds a MoPAD keeps it where it is. Doors stay
@@ -153,7 +153,7 @@ def _attach_robot(spec: mujoco.MjSpec) -> str:
 
 
 def _make_drivable(spec: mujoco.MjSpec, prefix: str) -> None:
-    """Gives the physics what a robot that drives on earth needs, and leaves everything else as the user has it."""
+    """Give the physics what a robot that drives on earth needs, and leave everything else as the user has it."""
     bits = mujoco.mjtDisableBit
     no_gravity = bool(spec.option.disableflags & bits.mjDSBL_GRAVITY) or spec.option.gravity[2] > -1.0
     if no_gravity:
@@ -221,7 +221,7 @@ def _start_pose(
 
 
 def _let_stand(model: mujoco.MjModel, data: mujoco.MjData, robot_bodies: frozenset[int], pose: np.ndarray) -> None:
-    """Puts a plane under the robot where the floor is a picture only."""
+    """Put a plane under the robot where the floor is a picture only."""
     solid = Rays(model, data, robot_bodies, only_solid=True)
     if solid.floor_below(pose[:3, 3] + [0, 0, 0.3], 0.35) is None:
         log.info("the floor has no collisions: MoPAD drives on a plane at z = %.3f m", pose[2, 3])
@@ -233,7 +233,7 @@ def _let_stand(model: mujoco.MjModel, data: mujoco.MjData, robot_bodies: frozens
 
 
 def _free_from_hulls(model: mujoco.MjModel, data: mujoco.MjData, bodies: frozenset[int]) -> None:
-    """Takes meshes whose convex hulls swallow the robot or a leaf out of the collisions.
+    """Take meshes whose convex hulls swallow the robot or a leaf out of the collisions.
 
     MuJoCo collides with a mesh's hull: in a room that is one mesh the robot would be inside a solid block, and a wall
     with a hole would push the leaf out of it.
@@ -246,7 +246,7 @@ def _free_from_hulls(model: mujoco.MjModel, data: mujoco.MjData, bodies: frozens
 
 
 def _free_to_swing(model: mujoco.MjModel, data: mujoco.MjData, leaves: frozenset[int]) -> None:
-    """Lets leaves collide with the robot only: drawn a little into its frame, a leaf would be flung open or shut."""
+    """Let leaves collide with the robot only: drawn a little into its frame, a leaf would be flung open or shut."""
     solid = np.isin(model.geom_bodyid, sorted(leaves)) & ((model.geom_contype != 0) | (model.geom_conaffinity != 0))
     model.geom_contype[solid], model.geom_conaffinity[solid] = _LEAF_BIT, 0
     bodies = np.unique(model.geom_bodyid[solid])
@@ -255,7 +255,7 @@ def _free_to_swing(model: mujoco.MjModel, data: mujoco.MjData, leaves: frozenset
 
 
 def set_base(model: mujoco.MjModel, data: mujoco.MjData, prefix: str, world_from_base: np.ndarray) -> None:
-    """Sets the robot down at a pose (4, 4), at rest, and updates what follows from it."""
+    """Set the robot down at a pose (4, 4), at rest, and update what follows from it."""
     start = int(model.joint(f"{prefix}free").qposadr[0])
     data.qpos[start : start + 3] = world_from_base[:3, 3]
     mujoco.mju_mat2Quat(data.qpos[start + 3 : start + 7], np.ascontiguousarray(world_from_base[:3, :3]).ravel())

@@ -57,7 +57,7 @@ class Light:
 def flash_light(
     inverse_depth: Image, seen_by_flash: Image, flash: tuple[float, float], window: Window, gloss: Gloss
 ) -> Light:
-    """Lights a picture by a point flash beside the lens.
+    """Light a picture by a point flash beside the lens.
 
     Inverse square, Lambert's cosine, Blinn-Phong lobe, hard shadow.
 

@@ -95,7 +95,7 @@ def freest_spot(model: mujoco.MjModel, data: mujoco.MjData, rays: Rays) -> np.nd
 
 
 def require_surroundings(rays: Rays, world_from_base: np.ndarray, footprint: tuple[float, float]) -> None:
-    """Checks that walls are near a start pose and that no furniture stands within the footprint.
+    """Check that walls are near a start pose and that no furniture stands within the footprint.
 
     Args:
         rays: casts against the scene without the robot.
@@ -187,7 +187,7 @@ def _glance(rays: Rays, position: np.ndarray, covered: bool) -> Spot:
 
 
 def _assess(rays: Rays, spot: Spot, look: tuple[int, Sequence[float]]) -> Spot:
-    """Adds how free a spot is, seen in so many directions at such heights."""
+    """Add how free a spot is, seen in so many directions at such heights."""
     azimuths = np.linspace(0, 2 * np.pi, look[0], endpoint=False)
     free = _distances(rays, spot.position, azimuths, look[1], _FREE_ENOUGH)
     boards = _overhang(rays, spot.position, azimuths[:: look[0] // 12])
@@ -206,7 +206,7 @@ def _apart(spots: list[Spot], grid: float) -> list[Spot]:
 
 
 def _refine(rays: Rays, spot: Spot, step: float) -> Spot:
-    """Climbs to the locally freest place, with a fan dense enough to meet the leg of a chair."""
+    """Climb to the locally freest place, with a fan dense enough to meet the leg of a chair."""
     best = _assess(rays, spot, _FINE)
     while step > 0.05:
         step /= 2

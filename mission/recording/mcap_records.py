@@ -130,7 +130,7 @@ def door(time: int, evaluation: DoorEvaluation, number: int) -> list[SceneEntity
 
 
 def everything(time: int) -> SceneEntityDeletion:
-    """Wipes what was drawn on a topic before."""
+    """Wipe what was drawn on a topic before."""
     return SceneEntityDeletion(timestamp=messages.timestamp(time), type=SceneEntityDeletionType.All, id="")
 
 

@@ -20,7 +20,7 @@ _HELP = "install software OpenGL with `apt-get install libegl1 libgl1` (or `apt-
 
 
 def make_context() -> Any:
-    """Makes an offscreen OpenGL context and makes it current.
+    """Make an offscreen OpenGL context, and make it current.
 
     MuJoCo fixes its own choice when it is imported and falls back on a window; taking the back end's class directly
     works whoever imported mujoco first, and with no environment variable set. MUJOCO_GL=osmesa asks for OSMesa.

@@ -12,7 +12,7 @@ _BAND = 64
 
 
 def blocks_across_jumps(raw: NDArray[np.float32]) -> NDArray[np.bool_]:
-    """Marks the 2 x 2 blocks of pixels that two surfaces share.
+    """Mark the 2 x 2 blocks of pixels that two surfaces share.
 
     Raw depth is linear over a plane, however oblique, and its steps change slowly over a curved surface. A step that
     leaves the interval of the steps before and after it is a jump; a crease, where two surfaces touch, is none.

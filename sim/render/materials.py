@@ -31,7 +31,7 @@ class Materials:
 
 
 def materials_of(model: mujoco.MjModel) -> Materials:
-    """Reads the materials of a model.
+    """Read the materials of a model.
 
     The exponent is 128 x shininess, as in MuJoCo's own OpenGL; where the material states a roughness r, it is the
     exponent of the same width as a microfacet lobe of that roughness, 2/r^4 - 2 (Walter et al. 2007, alpha = r^2).
@@ -47,12 +47,12 @@ def materials_of(model: mujoco.MjModel) -> Materials:
 
 
 def linear_from_srgb(colour: NDArray[np.floating]) -> NDArray[np.floating]:
-    """Decodes sRGB, 0 to 1 (IEC 61966-2-1)."""
+    """Decode sRGB, 0 to 1 (IEC 61966-2-1)."""
     return np.where(colour <= 0.04045, colour / 12.92, ((colour + 0.055) / 1.055) ** 2.4)
 
 
 def srgb_from_linear(light: NDArray[np.floating]) -> NDArray[np.floating]:
-    """Encodes sRGB, 0 to 1 (IEC 61966-2-1)."""
+    """Encode sRGB, 0 to 1 (IEC 61966-2-1)."""
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
 
 

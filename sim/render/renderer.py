@@ -86,7 +86,7 @@ class Renderer:
         self._scene.flags[:] = 0  # no shadows, reflections, skybox, fog, haze; both sides of every face
 
     def depth(self, data: mujoco.MjData, view: View) -> Depth:
-        """Renders raw depth and segments in one pass.
+        """Render raw depth and segments in one pass.
 
         Args:
             data: state of the world, after `mj_kinematics` or more.
@@ -104,7 +104,7 @@ class Renderer:
         return Depth(raw, low_high.view("<u2")[..., 0], geom_ids)
 
     def albedo(self, data: mujoco.MjData, view: View) -> NDArray[np.uint8]:
-        """Renders texture x rgba without any light.
+        """Render texture x rgba without any light.
 
         Returns:
             (height, width, 3) sRGB, bottom row first; black where there is nothing.
@@ -118,7 +118,7 @@ class Renderer:
         return colours
 
     def close(self) -> None:
-        """Frees the context; the renderer is of no use afterwards."""
+        """Free the context; the renderer is of no use afterwards."""
         self._owned.close()
 
     def __enter__(self) -> Renderer:
@@ -128,7 +128,7 @@ class Renderer:
         self.close()
 
     def _compose(self, data: mujoco.MjData, view: View) -> NDArray[np.int32]:
-        """Fills the scene with what is visible from the view, and returns the geom id of every segment."""
+        """Fill the scene with what is visible from the view, and return the geom id of every segment."""
         eye = view.world_from_view[:3, 3]
         self._point_camera(view)  # before the update: it is what infinite planes are centred on
         behind = np.einsum("gk,gk->g", eye - data.geom_xpos, data.geom_xmat[:, 2::3]) < 0
@@ -176,7 +176,7 @@ class Renderer:
 
     @contextmanager
     def _own_visual_settings(self) -> Iterator[None]:
-        """Lends the model our quality and our far distance, whatever the scene's author chose."""
+        """Lend the model our quality and our far distance, whatever the scene's author chose."""
         visual, quality = self.model.vis, self.model.vis.quality
         before = {name: getattr(quality, name) for name in _QUALITY}
         zfar, size = visual.map.zfar, (visual.global_.offwidth, visual.global_.offheight)

@@ -27,7 +27,7 @@ def effective_rgba(model: mujoco.MjModel) -> NDArray[np.float32]:
 
 
 def visible_geoms(model: mujoco.MjModel, hidden_bodies: Collection[int] = ()) -> NDArray[np.bool_]:
-    """Marks the geoms that a sensor can see.
+    """Mark the geoms that a sensor can see.
 
     Args:
         model: the world.
@@ -43,7 +43,7 @@ def visible_geoms(model: mujoco.MjModel, hidden_bodies: Collection[int] = ()) ->
 
 @contextmanager
 def showing(model: mujoco.MjModel, visible: NDArray[np.bool_]) -> Iterator[None]:
-    """Sorts the geoms into the groups `SHOWN` and `HIDDEN` for the length of a `with` block."""
+    """Sort the geoms into the groups `SHOWN` and `HIDDEN` for the length of a `with` block."""
     groups = model.geom_group.copy()
     model.geom_group[:] = np.where(visible, SHOWN, HIDDEN)
     try:
