@@ -9,6 +9,7 @@ import sys
 from typing import Any
 
 from sim.errors import SimError
+from sim.render.egl import egl_objection
 
 _LIBRARIES = {
     "egl": (("libEGL.so.1",), ("libOpenGL.so.0", "libGL.so.1")),
@@ -41,14 +42,23 @@ def make_context() -> Any:
 
 
 def _backend() -> str:
-    """Module of the back end whose libraries are there."""
+    """Module of the first back end that has its libraries and, for EGL, a driver."""
     if sys.platform != "linux":
         return "mujoco.gl_context"
     names = ["osmesa", "egl"] if os.environ.get("MUJOCO_GL", "").lower() == "osmesa" else ["egl", "osmesa"]
+    objections = []
     for name in names:
-        if all(any(_loads(library) for library in group) for group in _LIBRARIES[name]):
+        objection = _missing(name) or (egl_objection() if name == "egl" else None)
+        if objection is None:
             return f"mujoco.{name}"
-    raise SimError(f"no OpenGL found (neither libEGL.so.1 nor libOSMesa.so.8 loads); {_HELP}")
+        objections.append(objection)
+    raise SimError(f"no OpenGL found ({'; '.join(objections)}); {_HELP}")
+
+
+def _missing(name: str) -> str | None:
+    """Which libraries a back end lacks; None if it has them."""
+    missing = [" or ".join(group) for group in _LIBRARIES[name] if not any(_loads(library) for library in group)]
+    return f"{' and '.join(missing)} cannot be loaded" if missing else None
 
 
 def _loads(library: str) -> bool:

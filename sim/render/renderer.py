@@ -51,7 +51,7 @@ class Renderer:
         near: float = 0.05,
         far: float = 1000.0,
     ) -> None:
-        """Uploads the model.
+        """Upload the model.
 
         Args:
             model: the compiled world; geoms, colours and textures are taken as they are now.

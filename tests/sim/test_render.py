@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import mujoco
@@ -176,6 +179,31 @@ def test_osmesa_is_the_second_choice(monkeypatch):
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setattr(gl, "_loads", lambda library: "OSMesa" in library)
     assert gl._backend() == "mujoco.osmesa"
+
+
+def backend_without_a_driver(*, osmesa: bool) -> str:
+    """What a process prints that picks its back end where EGL's library loads, but finds no driver."""
+    code = (
+        "import sim.render.context as gl; from sim.errors import SimError; loads = gl._loads\n"
+        f"gl._loads = lambda library: {osmesa} if 'OSMesa' in library else loads(library)\n"
+        "try: print(gl._backend())\n"
+        "except SimError as error: print(error)"
+    )
+    environment = {k: v for k, v in os.environ.items() if k != "MUJOCO_GL"}
+    environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = "/nonexistent"  # read by libEGL when it is first called
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
+    return done.stdout
+
+
+def test_osmesa_is_taken_where_egl_has_no_driver():
+    assert backend_without_a_driver(osmesa=True) == "mujoco.osmesa\n"
+
+
+def test_without_driver_and_osmesa_one_line_says_what_is_missing_and_which_packages_bring_it():
+    said = backend_without_a_driver(osmesa=False)
+    assert "EGL finds no device" in said and "libOSMesa.so.8" in said
+    assert "apt-get install libegl1 libgl1" in said and "libosmesa6" in said
+    assert said.count("\n") == 1
 
 
 def test_a_grazing_plane_has_no_jumps_but_a_small_step_in_it_has():
