@@ -1,0 +1,194 @@
+"""What the Rerun recording shows to a person."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rerun.chunk import RrdReader
+
+from detector.result import Candidate, Rectangle
+from mission.events import DoorsEvaluated, Drove, Labelled, Planned
+from mission.recording.blueprint import outlook
+from mission.recording.rerun_doors import Shot
+from mission.recording.rerun_results import LABEL, label_places
+from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
+from tests.mission.recording_room import ESTIMATE, JOINT
+from tests.mission.recording_story import story
+from tests.mission.rerun_file import column, event_of, points, record
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return record(tmp_path_factory.mktemp("rrd") / "mission.rrd", story())
+
+
+@pytest.mark.parametrize(
+    "entity",
+    [
+        "/world/robot/body",
+        "/world/scans/001/points",
+        "/world/scans/002/points",
+        "/world/ceiling/001",
+        "/world/path/driven/0008",
+        "/world/path/planned",
+        "/world/candidates/all",
+        "/world/candidates/chosen",
+        "/world/map/voxels",
+        "/world/map/grid",
+        "/world/walls/1/outlines",
+        "/world/doors/1.2/1.2-a/leaf",
+        "/world/truth/doors/hall\\/door\\ 1",
+        "/world/camera/photo",
+        "/world/shots/1.2/photo",
+        "/walls/1.2/view/0/highlights/regions",
+        "/walls/1.2/view/0/inpainted",
+        "/walls/1.2/merged/depth",
+        "/walls/1.2/openings/trinary",
+        "/walls/1.2/wall_area/clusters",
+        "/walls/1.2/edges/classes",
+        "/walls/1.2/candidates/boxes",
+        "/walls/1.4/merged/colour",
+        "/plots/angle/estimate/1.2-a",
+        "/plots/coverage/1/walls",
+        "/plots/coverage/1/structure",
+        "/states/activity",
+        "/report/summary",
+        "/report/configuration",
+    ],
+)
+def test_the_tree_has(recording: Path, entity: str) -> None:
+    assert entity in {chunk.entity_path for chunk in RrdReader(recording).store().stream().to_chunks()}
+
+
+def test_there_is_a_tab_for_the_mission_for_each_wall_with_doors_and_for_the_results(recording: Path) -> None:
+    reader, shown = RrdReader(recording), {}
+    for blueprint in reader.blueprints():
+        for chunk in reader.store(store=blueprint).stream().to_chunks():
+            batch = chunk.to_record_batch()
+            if "ContainerBlueprint:display_name" in batch.schema.names:
+                (name,) = batch.column("ContainerBlueprint:display_name").to_pylist()[0]
+                visible = "ContainerBlueprint:visible" in batch.schema.names
+                shown[name] = not visible or batch.column("ContainerBlueprint:visible").to_pylist()[0] == [True]
+    assert {name for name, visible in shown.items() if visible} >= {"Mission", "Wall 1.2", "Wall 1.3", "Results"}
+    assert {name for name, visible in shown.items() if not visible} == {"Wall 1.1", "Wall 1.4"}
+
+
+def test_estimates_and_joints_are_those_of_the_event(recording: Path) -> None:
+    estimates = column(recording, "/plots/angle/estimate/1.2-a", "Measurements:values")
+    joints = column(recording, "/plots/angle/joint/hall\\/door\\ 1", "Scalars:scalars")
+    assert {value for row in estimates for value in row} == {np.degrees(ESTIMATE)}
+    assert {value for row in joints for value in row} == {np.degrees(JOINT)}
+    (error,) = column(recording, "/table/doors/1.2-a", "error_deg")
+    assert error == pytest.approx([-1.0])  # 30 deg measured, the joint at 31
+
+
+def test_the_errors_are_labelled_with_two_decimals(recording: Path) -> None:
+    assert column(recording, "/figures/angle_error/labels", "Points2D:labels")[-1][0] == "1.2-a: -1.00 deg"
+
+
+def test_walls_and_structure_are_two_lines_of_what_was_seen(recording: Path) -> None:
+    labelled = [event.voxels.coverage for event in story() if isinstance(event, Labelled)]
+    planned = [event.plan.coverage for event in story() if isinstance(event, Planned)]
+    colours = []
+    for what, shares in (("walls", labelled), ("structure", planned)):
+        entity = f"/plots/coverage/1/{what}"
+        values = [value for row in column(recording, entity, "Scalars:scalars") for value in row]
+        assert values == pytest.approx([100 * share for share in shares])
+        assert column(recording, entity, "SeriesLines:names") == [[f"room 1: {what} seen [%]"]]
+        colours += column(recording, entity, "SeriesLines:colors")
+    assert colours[0] != colours[1]
+
+
+def test_labels_of_doors_that_are_all_closed_do_not_hide_each_other() -> None:
+    points = [
+        (0.0, 0.0),
+        (35.0, -34.0),
+        (0.0, 0.1),
+        (0.0, 0.0),
+        (90.0, -91.0),
+        (0.0, -12.0),
+        (95.0, -20.0),
+        (60.0, -21.0),
+    ]
+    places = np.array(label_places(points))
+    width, height = LABEL
+    for number, place in enumerate(places):
+        gap = np.abs(np.delete(places, number, axis=0) - place)
+        assert ((gap[:, 0] >= width) | (gap[:, 1] > height - 1e-9)).all()
+    assert places[4] == pytest.approx([90 + 0.53 * width, -91 - height])  # none near: beside its point
+
+
+def test_a_door_is_drawn_where_it_was_found_and_labelled_with_its_joint(recording: Path) -> None:
+    evaluation = event_of(DoorsEvaluated).doors[0]
+    (leaf,) = column(recording, "/world/doors/1.2/1.2-a/leaf", "LineStrips3D:strips")
+    np.testing.assert_allclose(leaf[0][:4], evaluation.leaf_corners_in_world[0], atol=1e-6)
+    assert column(recording, "/world/doors/1.2/1.2-a/label", "Points3D:labels") == [["1.2-a: 30.0 deg (joint 31.0)"]]
+
+
+def test_the_robot_moves_through_every_pose_of_its_way(recording: Path) -> None:
+    rows = column(recording, "/world/robot", "Transform3D:translation")
+    way = event_of(Drove).world_from_base[:, :3, 3]
+    driven = np.array([row[0] for row in rows])
+    distances = np.linalg.norm(driven[:, None] - way[None], axis=2).min(axis=0)
+    assert distances.max() < 1e-6
+
+
+def test_the_ceiling_is_apart_so_that_one_sees_into_the_room(recording: Path) -> None:
+    below, above = points(recording, "/world/scans/001/points")[-1], points(recording, "/world/ceiling/001")[-1]
+    assert below[:, 2].max() < 2.6 < above[:, 2].min() + 0.01  # the ceiling is 2.7 m high
+
+
+def test_without_a_ceiling_the_cloud_is_whole(tmp_path: Path) -> None:
+    events = story()[:6]
+    structured = events[5]
+    events[5] = replace(structured, structure=replace(structured.structure, ceiling_height=None))  # type: ignore[call-arg]
+    path = record(tmp_path / "open air.rrd", events)
+    assert points(path, "/world/scans/001/points")[-1][:, 2].max() == pytest.approx(2.7, abs=0.002)
+
+
+def test_the_summary_quotes_every_door_and_every_miss(recording: Path) -> None:
+    text = column(recording, "/report/summary", "TextDocument:text")[-1][0]
+    assert "| 1.2-a | single | semi-open | 0.90 x 2.10 | 30.0 ± 0.40 | 31.0 | -1.00 |" in text
+    assert "missed: `lift`" in text
+    assert "**completed**: one room; 2.0 m driven in 2 min 52 s" in text
+
+
+@pytest.mark.parametrize(
+    ("left", "area"),
+    [
+        (-0.5, 1600),  # f w / z = 80 * 1 / 2 = 40 px wide and 40 px tall, whole in a picture 120 px wide
+        (1.0, 400),  # half of it is cut off: 800 px2 are shown, and count for half again
+        (9.0, 0),
+    ],
+)
+def test_a_photograph_counts_for_what_it_shows_of_a_door(left: float, area: float) -> None:
+    shot = Shot(b"", np.array([[80, 0, 60], [0, 80, 40], [0, 0, 1.0]]), 120, 80, np.eye(4), np.eye(4))
+    door = np.array([[left, -0.5, 2], [left + 1, -0.5, 2], [left + 1, 0.5, 2], [left, 0.5, 2]])
+    assert shot.shown_area(door[None]) == pytest.approx(area)
+    assert shot.shown_area(-door[None]) == 0  # behind the camera
+
+
+def judged(left: float, support: float, rejected_by: str | None) -> Candidate:
+    return Candidate(Rectangle(left, 0, left + 1, 2), 1.0, 1.0, (support, 1.0, 1.0, 1.0), 0.0, rejected_by)
+
+
+def test_accepted_candidates_are_all_drawn_and_rejected_ones_by_how_far_they_came() -> None:
+    candidates = [judged(0, 0.9, None)] + [judged(i, i / 100, "sides") for i in range(50)]
+    shown = shown_candidates(candidates)
+    assert len(shown) == SHOWN_CANDIDATES + 1
+    assert shown[-1].rejected_by is None  # drawn last, on top
+    assert min(c.side_support[0] for c in shown[:-1]) == (50 - SHOWN_CANDIDATES) / 100
+
+
+def test_rejected_candidates_that_look_the_same_are_drawn_once() -> None:
+    shown = shown_candidates([judged(0, 0.5, "sides"), judged(0.02, 0.6, "size"), judged(0.5, 0.4, "size")])
+    assert [c.side_support[0] for c in shown] == [0.6, 0.4]  # 0.98 / 1.02 of the first two is common
+
+
+def test_the_eye_looks_down_on_the_middle_of_the_room() -> None:
+    seen = outlook(np.array([[10.0, -7, 0], [16, -2.5, 2.7]]))
+    assert seen.target == pytest.approx([13, -4.75, 1.35])
+    assert seen.eye[2] > 2.7
