@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.result import Mask, Orthoimage
+from detector.result import Image, Mask, Orthoimage
 
 SAMPLES = 50_000
 """Pixels that are enough to measure light on."""
@@ -36,8 +37,10 @@ def pixel_grid(shape: tuple[int, int], pixel_size: float, height: float) -> tupl
 def incidence(image: Orthoimage, origin: NDArray[np.float64], height: float) -> tuple[NDArray, NDArray]:
     """Incidence angle [rad] and range [m] of each pixel (H, W), seen from a point in wall coordinates."""
     u, v = pixel_grid(image.depth.shape, image.pixel_size, height)
-    ranges = np.sqrt((u - origin[0]) ** 2 + (v - origin[1]) ** 2 + origin[2] ** 2).astype(np.float32)
-    return np.arccos(np.clip(np.float32(origin[2]) / ranges, -1, 1)), ranges
+    squares = (u - origin[0]) ** 2 + ((v - origin[1]) ** 2 + origin[2] ** 2)
+    ranges = np.sqrt(squares, out=squares).astype(np.float32)
+    cosines = np.float32(origin[2]) / ranges
+    return np.arccos(np.clip(cosines, -1, 1, out=cosines), out=cosines), ranges
 
 
 def even_light(
@@ -103,9 +106,12 @@ def _fit(law: NDArray, luminance: NDArray) -> tuple[float, float]:
     return ambient, slope
 
 
-def _scaled(colour: NDArray[np.uint8], gain: NDArray) -> NDArray[np.uint8]:
+def _scaled(colour: Image, gain: NDArray[np.float32]) -> Image:
     """sRGB colours after multiplying their linear light."""
     light = np.linspace(0, 1, SRGB_TABLE + 1)
     table = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055) * 255
-    scaled = np.minimum(LINEAR[colour] * gain[..., None].astype(np.float32), 1)
-    return np.rint(table[(scaled * SRGB_TABLE + 0.5).astype(np.int32)]).astype(np.uint8)
+    scaled = cv2.multiply(cv2.LUT(colour, LINEAR), cv2.merge([gain] * 3))
+    np.minimum(scaled, 1, out=scaled)
+    scaled *= SRGB_TABLE
+    scaled += 0.5
+    return np.rint(table).astype(np.uint8).take(scaled.astype(np.intp))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from detector.edges import colour_threshold, depth_edges, di_zenzo, find_edges
+from detector.edges import colour_threshold, depth_edges, di_zenzo, find_edges, structure_tensor
 from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.wall_area import adaptive_kmeans, coherent_seeds, find_wall_area, kmeans, rgbd, silhouettes
@@ -75,7 +75,7 @@ def test_without_any_colour_depth_decides() -> None:
 def test_di_zenzo_gives_the_slope_of_a_ramp_in_colour_space() -> None:
     # each channel rises by 3, 4 and 0 hundredths a column: together by 0.05
     dx = np.tile(np.array([0.03, 0.04, 0.0], np.float32), (5, 5, 1))
-    np.testing.assert_allclose(di_zenzo(dx, np.zeros_like(dx)), 0.05, rtol=1e-5)
+    np.testing.assert_allclose(di_zenzo(*structure_tensor(dx, np.zeros_like(dx))), 0.05, rtol=1e-5)
 
 
 def test_otsu_separates_a_strong_edge_from_texture_and_the_cap_keeps_a_faint_one() -> None:
