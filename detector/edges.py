@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from cv2.typing import MatLike
+from numpy.typing import NDArray
 
 from detector.openings import Visibility
 from detector.orthoimage import nearest
@@ -14,6 +15,7 @@ from detector.parameters import DetectorParameters
 from detector.result import Image, Mask, Orthoimage
 
 DIFFERENCE = np.array([[-0.5, 0.0, 0.5]], np.float32)
+"""Central difference along the columns; its transpose is that down the rows."""
 ALONG = 0.075
 """Smoothing along a hypothetical side [m]: sides are upright or level (section 5), so it blurs noise, not edges."""
 COLOUR_ALONG = 0.155
@@ -75,17 +77,14 @@ def _odd(length: float, pixel_size: float) -> int:
 
 def _derivatives(image: NDArray[np.float32], along_px: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Central differences, each of the image smoothed along the other direction."""
-    return _across(cv2.blur(image, (1, along_px))), _down(cv2.blur(image, (along_px, 1)))
+    dx = _difference(cv2.blur(image, (1, along_px)), DIFFERENCE)
+    dy = _difference(cv2.blur(image, (along_px, 1)), DIFFERENCE.T)
+    return dx, dy
 
 
-def _across(image: ArrayLike) -> NDArray[np.float32]:
-    """Central difference along the columns."""
-    return np.asarray(cv2.filter2D(image, cv2.CV_32F, DIFFERENCE, borderType=cv2.BORDER_REPLICATE), np.float32)
-
-
-def _down(image: ArrayLike) -> NDArray[np.float32]:
-    """Central difference down the rows."""
-    return np.asarray(cv2.filter2D(image, cv2.CV_32F, DIFFERENCE.T, borderType=cv2.BORDER_REPLICATE), np.float32)
+def _difference(image: MatLike, kernel: NDArray[np.float32]) -> NDArray[np.float32]:
+    """An image filtered with one of the two central differences."""
+    return np.asarray(cv2.filter2D(image, cv2.CV_32F, kernel, borderType=cv2.BORDER_REPLICATE), np.float32)
 
 
 def structure_tensor(dx: NDArray[np.float32], dy: NDArray[np.float32]) -> tuple[NDArray[np.float32], ...]:
@@ -162,7 +161,7 @@ def wall_face(view: Orthoimage, parameters: DetectorParameters) -> Mask:
     """
     data = np.isfinite(view.depth)
     smooth = cv2.blur(nearest(view.depth, data), (1, _odd(ALONG, view.pixel_size)))
-    slope = _local_slope(_across(smooth[:: _slope_rows(view.pixel_size)]), view.pixel_size, len(smooth))
+    slope = _local_slope(_difference(smooth[:: _slope_rows(view.pixel_size)], DIFFERENCE), view.pixel_size, len(smooth))
     near = np.abs(view.depth) < parameters.slab_face  # False for NaN
     return near & (np.abs(slope) <= _flatness(slope, near, view.pixel_size))
 

@@ -133,8 +133,9 @@ def _crossings(columns: NDArray[np.float32], scanner: NDArray[np.float64], wall:
     """(2, K) where the beams to the points (3, N) meet the wall's plane, of those that meet its rectangle."""
     origin = scanner.astype(np.float32)
     along = origin[2] / (origin[2] - columns[2])
-    crossings = np.stack([origin[i] + along * (columns[i] - origin[i]) for i in range(2)])
-    return _chosen(crossings, _inside(*crossings, wall))
+    u, v = (origin[i] + along * (columns[i] - origin[i]) for i in range(2))
+    inside = np.flatnonzero(_inside(u, v, wall))
+    return np.stack([u.take(inside), v.take(inside)])
 
 
 def pixels(points: NDArray[np.float32], wall: Wall, shape: tuple[int, int], pixel_size: float) -> NDArray[np.int32]:
@@ -231,9 +232,7 @@ def nearest(image: NDArray, known: Mask, wanted: Mask | None = None) -> NDArray:
     gaps = np.flatnonzero(~known if wanted is None else wanted & ~known)
     if len(gaps) == 0 or not known.any():
         return image
-    _, labels = cv2.distanceTransformWithLabels(
-        (~known).view(np.uint8), cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL
-    )
+    _, labels = cv2.distanceTransformWithLabels((~known).view(np.uint8), cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL)
     source = np.flatnonzero(known)[labels.ravel()[gaps] - 1]  # known pixels are labelled from 1, row by row
     result = image.copy()
     flat = result.reshape(known.size, -1)

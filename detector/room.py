@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -73,7 +74,7 @@ class Wall:
     voxel_size: float = 0.2
     """Side of a voxel [m]."""
 
-    @property
+    @cached_property
     def normal(self) -> NDArray[np.float64]:
         """(3,) unit vector into the room."""
         return np.cross(self.u, self.v)

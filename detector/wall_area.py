@@ -29,12 +29,13 @@ def find_wall_area(merged: Orthoimage, parameters: DetectorParameters) -> WallAr
     if len(seeds) == 0:
         nothing = np.zeros(known.shape, np.int32)
         return WallArea(seeds, np.zeros(0, np.int32), nothing, nothing > 0)
-    assigned = adaptive_kmeans(means, parameters)
+    distances = pair_distances(means, means)
+    assigned = adaptive_kmeans(means, distances, parameters)
     # The paper removes seeds whose |silhouette| is *higher* than delta, which would throw away the consistent ones that
     # the step is to keep; read as: keep s >= delta. One cluster has no silhouette.
     kept = assigned
     if assigned.max() > 1:
-        kept = np.where(silhouettes(means, assigned) >= parameters.delta, assigned, 0)
+        kept = np.where(silhouettes(distances, assigned) >= parameters.delta, assigned, 0)
     clusters = segment(values, known, means, kept, parameters)
     return WallArea(seeds, kept, clusters, clusters == _wall_cluster(clusters) if clusters.any() else clusters > 0)
 
@@ -42,7 +43,7 @@ def find_wall_area(merged: Orthoimage, parameters: DetectorParameters) -> WallAr
 def rgbd(merged: Orthoimage, parameters: DetectorParameters) -> NDArray[np.float32]:
     """(H, W, 4) colour in 0..1 and depth over `depth_scale`: four components that count alike."""
     depth = np.nan_to_num(merged.depth) / np.float32(parameters.depth_scale)
-    return np.dstack([merged.colour.astype(np.float32) / 255, depth.astype(np.float32)])
+    return np.asarray(cv2.merge([*cv2.split(merged.colour.astype(np.float32) / 255), depth]), np.float32)
 
 
 def coherent_seeds(
@@ -66,17 +67,22 @@ def coherent_seeds(
     return seeds[coherent], patches.mean(axis=1)[coherent]
 
 
-def adaptive_kmeans(means: NDArray[np.float32], parameters: DetectorParameters) -> NDArray[np.int32]:
-    """(S,) cluster of each seed, from 1; the number of clusters is the one with the best mean silhouette."""
+def adaptive_kmeans(
+    means: NDArray[np.float32], distances: NDArray[np.float32], parameters: DetectorParameters
+) -> NDArray[np.int32]:
+    """(S,) cluster of each seed, from 1; the number of clusters is the one with the best mean silhouette.
+
+    Args:
+        distances: (S, S) between the seeds' means.
+    """
     one = np.ones(len(means), np.int32)
     if len(means) < 4 or (means.std(axis=0) < ONE_COLOUR).all():
         return one
     best, best_score = one, parameters.min_silhouette
-    distances = _distances(means, means)
     for k in range(2, min(parameters.max_clusters, len(means) - 1) + 1):
         assigned = kmeans(means, k)
         if len(np.unique(assigned)) == k:
-            score = float(silhouettes(means, assigned, distances).mean())
+            score = float(silhouettes(distances, assigned).mean())
             if score > best_score + 1e-6:
                 best, best_score = assigned, score
     return best
@@ -89,29 +95,32 @@ def kmeans(samples: NDArray[np.float32], k: int) -> NDArray[np.int32]:
         rng = np.random.default_rng(start)
         centres = samples[[rng.integers(len(samples))]]
         while len(centres) < k:
-            nearest = _distances(samples, centres).min(axis=1).astype(np.float64) ** 2
+            nearest = pair_distances(samples, centres).min(axis=1).astype(np.float64) ** 2
             if nearest.sum() == 0:
                 break
             centres = np.vstack([centres, samples[[rng.choice(len(samples), p=nearest / nearest.sum())]]])
-        assigned = _distances(samples, centres).argmin(axis=1)
+        assigned = pair_distances(samples, centres).argmin(axis=1)
         for _ in range(ITERATIONS):
             counts = np.bincount(assigned, minlength=len(centres))
             sums = np.stack(
                 [np.bincount(assigned, samples[:, i], len(centres)) for i in range(samples.shape[1])], axis=1
             )
             centres = np.where(counts[:, None] > 0, sums / np.maximum(counts, 1)[:, None], centres).astype(np.float32)
-            before, assigned = assigned, _distances(samples, centres).argmin(axis=1)
+            before, assigned = assigned, pair_distances(samples, centres).argmin(axis=1)
             if np.array_equal(before, assigned):
                 break
-        cost = float((_distances(samples, centres).min(axis=1) ** 2).sum())
+        cost = float((pair_distances(samples, centres).min(axis=1) ** 2).sum())
         if cost < best_cost - 1e-9:
             best, best_cost = assigned.astype(np.int32) + 1, cost
     return best
 
 
-def silhouettes(samples: NDArray, assigned: NDArray[np.int32], distances: NDArray | None = None) -> NDArray[np.float64]:
-    """(S,) silhouette (b - a) / max(a, b) of each sample; 0 for one that is alone in its cluster."""
-    distances = _distances(samples, samples) if distances is None else distances
+def silhouettes(distances: NDArray[np.float32], assigned: NDArray[np.int32]) -> NDArray[np.float64]:
+    """(S,) silhouette (b - a) / max(a, b) of each sample; 0 for one that is alone in its cluster.
+
+    Args:
+        distances: (S, S) between the samples.
+    """
     numbers = np.unique(assigned)
     members = (assigned[:, None] == numbers).astype(np.float32)
     counts = members.sum(axis=0)
@@ -154,10 +163,10 @@ def _wall_cluster(clusters: NDArray[np.int32]) -> int:
     return int(counts.argmax())
 
 
-def _distances(a: NDArray, b: NDArray) -> NDArray[np.float32]:
+def pair_distances(a: NDArray, b: NDArray) -> NDArray[np.float32]:
     """(N, M) Euclidean distances, summed component by component so that the order of summation is fixed."""
     if len(b) < len(a):
-        return _distances(b, a).T  # the long axis last: short rows are slow
+        return pair_distances(b, a).T  # the long axis last: short rows are slow
     squares, difference = np.zeros((2, len(a), len(b)), np.float32)
     for i in range(a.shape[1]):
         np.subtract(a[:, i, None], b[None, :, i], out=difference)
