@@ -14,8 +14,6 @@ from detector.room import DetectorError, View, Wall
 
 LEAF_REACH = 1.7
 """How far from the wall an open leaf can stand [m]."""
-THINNED_TO = 600_000
-"""Points of a view that are enough for shadows and leaves."""
 MAX_PASSED = 1_500_000
 """Points behind the wall that are enough to outline its holes."""
 BLOCK = 1 << 18
@@ -84,7 +82,7 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
         return None
     near = near.take(inside)
     behind = _columns(wall.wall_from_world(points.take(deep[:: 1 + len(deep) // MAX_PASSED], axis=0)))
-    thinned = _columns(wall.wall_from_world(points[:: 1 + 2 * (len(points) // (2 * THINNED_TO))]))
+    thinned = _columns(wall.wall_from_world(view.thinned_points))
     u, v, depths = thinned
     front = (depths > parameters.slab_front) & (depths < 0.98 * scanner[2])
     reach = (depths < LEAF_REACH) & (depths >= -parameters.face_tolerance)
@@ -106,12 +104,14 @@ def _near_and_deep(
     points: NDArray[np.float32], wall: Wall, parameters: DetectorParameters
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Indices of the points within the wall's slab, and of those behind its face."""
-    near, deep = [], []
+    indices, depths = [np.zeros(0, np.int64)], [np.zeros(0, np.float32)]
     for start in range(0, len(points), BLOCK):
-        depths = wall.depths(points[start : start + BLOCK])
-        near.append(start + np.flatnonzero((depths > -parameters.slab_behind) & (depths < parameters.slab_front)))
-        deep.append(start + np.flatnonzero(depths < -parameters.face_tolerance))
-    return np.concatenate(near or [np.zeros(0, np.int64)]), np.concatenate(deep or [np.zeros(0, np.int64)])
+        depth = wall.depths(points[start : start + BLOCK])
+        low = np.flatnonzero(depth < parameters.slab_front)
+        indices.append(start + low)
+        depths.append(depth.take(low))
+    index, depth = np.concatenate(indices), np.concatenate(depths)
+    return index[depth > -parameters.slab_behind], index[depth < -parameters.face_tolerance]
 
 
 def _columns(points: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -175,16 +175,17 @@ def _mean_colour(index: NDArray[np.int32], points: WallPoints, shape: tuple[int,
     """
     from scipy.sparse import csc_array
 
-    count, size = len(index), shape[0] * shape[1]
-    # one column a point: the product adds the three channels of each point to its pixel in one pass
+    count = len(index)
+    # one column a point: the product adds red, green, blue and opacity of each point to its pixel in one pass
     pixel_of_point = csc_array(
-        (points.coloured.astype(np.float32), index, np.arange(count + 1, dtype=np.int32)), (size, count)
+        (points.coloured.astype(np.float32), index, np.arange(count + 1, dtype=np.int32)),
+        (shape[0] * shape[1], count),
     )
-    sums = (pixel_of_point @ points.colours.astype(np.float32)).reshape(*shape, 3)
-    counts = np.bincount(index.take(np.flatnonzero(points.coloured)), minlength=size).reshape(shape)
-    divisor = np.maximum(counts, 1).astype(np.float32)
-    mean = cv2.convertScaleAbs(cv2.divide(sums, cv2.merge([divisor] * 3)))
-    return np.asarray(mean, np.uint8), counts > 0
+    opaque = cv2.cvtColor(points.colours[None], cv2.COLOR_RGB2RGBA)[0].astype(np.float32)
+    *sums, opacity = cv2.split((pixel_of_point @ opaque).reshape(*shape, 4))
+    counts = np.maximum(opacity / 255, 1)
+    mean = cv2.convertScaleAbs(cv2.merge([channel / counts for channel in sums]))
+    return np.asarray(mean, np.uint8), opacity > 0
 
 
 def largest(index: NDArray[np.integer], values: NDArray[np.float32], size: int) -> NDArray[np.float32]:

@@ -10,6 +10,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+THINNED_TO = 600_000
+"""Points of a view that are enough for shadows and leaves."""
+
 
 class DetectorError(ValueError):
     """A room, wall or parameter that the detector cannot work with."""
@@ -40,6 +43,11 @@ class View:
     """(3,) origin of the laser beams [m]."""
     camera_in_world: NDArray[np.float64]
     """(3,) centre of the camera, the same for all photographs of the scan [m]."""
+
+    @cached_property
+    def thinned_points(self) -> NDArray[np.float32]:
+        """(M, 3) some of the points, in the world frame, enough for shadows and leaves [m]."""
+        return np.ascontiguousarray(self.points_in_world[:: 1 + 2 * (len(self.points_in_world) // (2 * THINNED_TO))])
 
     def __post_init__(self) -> None:
         n = len(self.points_in_world)

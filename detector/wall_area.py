@@ -17,6 +17,8 @@ DEPTH_SLACK = 0.012
 """Least half width of a cluster's box in depth [m]: 4 sigma of the scanner."""
 ONE_COLOUR = 0.03
 """Standard deviation below which all seeds are one cluster, of 1."""
+BLOCK = 128
+"""Rows of a matrix of distances that stay in the processor's cache."""
 BORDER_PX = 8
 """Width of the left, right and top borders that the wall shows on."""
 
@@ -138,17 +140,25 @@ def segment(
     """(H, W) cluster of each pixel by thresholds on all four components; exclusive: the nearer cluster if two match."""
     smooth = cv2.blur(values, (3, 3))
     slack = np.array([COLOUR_SLACK] * 3 + [DEPTH_SLACK / parameters.depth_scale], np.float32)
-    best, result = np.full(known.size, np.inf, np.float32), np.zeros(known.size, np.int32)
+    result, contested = np.zeros(known.size, np.int32), np.zeros(known.size, bool)
+    boxes = {}
     for number in range(1, kept.max(initial=0) + 1):
         members = means[kept == number]
         if len(members) == 0:
             continue
         low, centre, high = np.quantile(members, [0.01, 0.5, 0.99], axis=0).astype(np.float32)
         within = cv2.inRange(smooth, tuple((low - slack).tolist()), tuple((high + slack).tolist()))
-        matches = np.flatnonzero(known & (within > 0))
-        distance = ((smooth.reshape(-1, 4).take(matches, axis=0) - centre) ** 2).sum(axis=1)
-        nearer = distance < best.take(matches)
-        best[matches[nearer]], result[matches[nearer]] = distance[nearer], number
+        matches = known.ravel() & (within.ravel() > 0)
+        contested |= matches & (result > 0)
+        result[matches] = number
+        boxes[number] = centre, matches
+    pixels = np.flatnonzero(contested)
+    nearest = np.full(len(pixels), np.inf, np.float32)
+    colours = smooth.reshape(-1, 4).take(pixels, axis=0)
+    for number, (centre, matches) in boxes.items():
+        distance = np.where(matches.take(pixels), ((colours - centre) ** 2).sum(axis=1), np.inf)
+        result[pixels[distance < nearest]] = number
+        nearest = np.minimum(nearest, distance)
     return result.reshape(known.shape)
 
 
@@ -167,8 +177,10 @@ def pair_distances(a: NDArray, b: NDArray) -> NDArray[np.float32]:
     """(N, M) Euclidean distances, summed component by component so that the order of summation is fixed."""
     if len(b) < len(a):
         return pair_distances(b, a).T  # the long axis last: short rows are slow
-    squares, difference = np.zeros((2, len(a), len(b)), np.float32)
-    for i in range(a.shape[1]):
-        np.subtract(a[:, i, None], b[None, :, i], out=difference)
-        squares += np.square(difference, out=difference)
+    squares = np.zeros((len(a), len(b)), np.float32)
+    for start in range(0, len(a), BLOCK):
+        rows, part = a[start : start + BLOCK], squares[start : start + BLOCK]
+        for i in range(a.shape[1]):
+            difference = rows[:, i, None] - b[None, :, i]
+            part += np.square(difference, out=difference)
     return np.sqrt(squares, out=squares)
