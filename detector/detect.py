@@ -39,11 +39,13 @@ def detect_doors(room: Room, parameters: DetectorParameters | None = None) -> li
         One result a wall, in the order of `Room.walls`. A wall that no view saw has empty images and no door.
 
     Raises:
-        DetectorError: The room has no view, or a wall is malformed or too large for `pixel_size`.
+        DetectorError: The room has no view or no floor, or a wall is malformed or too large for `pixel_size`.
     """
     parameters = parameters or DetectorParameters()
     if not room.views:
         raise DetectorError("Room.views: expected at least one view, got none")
+    if not np.isfinite(room.floor_height):
+        raise DetectorError(f"Room.floor_height: expected a height, got {room.floor_height}")
     return each(partial(detect_wall, room, parameters=parameters), room.walls)
 
 
@@ -169,6 +171,8 @@ def check_wall(wall: Wall) -> None:
         raise DetectorError("Wall.u: expected to be perpendicular to Wall.v")
     if wall.voxel_labels.ndim != 2 or 0 in wall.voxel_labels.shape:
         raise DetectorError(f"Wall.voxel_labels: expected rows x columns, got shape {wall.voxel_labels.shape}")
+    if not (np.isfinite(wall.voxel_size) and wall.voxel_size > 0):
+        raise DetectorError(f"Wall.voxel_size: expected a positive length, got {wall.voxel_size}")
 
 
 def _empty(wall: Wall, parameters: DetectorParameters) -> Orthoimage:

@@ -69,10 +69,10 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
         floor: Height of the floor along v [m].
 
     Returns:
-        None where the view stands behind the wall or has no point in its slab.
+        None where the scanner or its camera stands behind the wall, or the view has no point in its slab.
     """
     scanner, camera = wall.wall_from_world(np.stack([view.scanner_in_world, view.camera_in_world]).astype(np.float64))
-    if not scanner[2] > parameters.slab_front:
+    if min(scanner[2], camera[2]) <= parameters.slab_front:
         return None
     points = view.points_in_world
     near, deep = _near_and_deep(points, wall, parameters)
@@ -111,7 +111,9 @@ def _near_and_deep(
         indices.append(start + low)
         depths.append(depth.take(low))
     index, depth = np.concatenate(indices), np.concatenate(depths)
-    return index[depth > -parameters.slab_behind], index[depth < -parameters.face_tolerance]
+    # minus infinity is no depth, and no number is none either: such points are left out
+    behind = (depth < -parameters.face_tolerance) & (depth > -np.inf)
+    return index[depth > -parameters.slab_behind], index[behind]
 
 
 def _columns(points: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -43,7 +43,7 @@ def find_lines(edges: Mask, axis: int, window_px: int, share: float, limit: int 
     across = (2 * TOLERANCE_PX + 1, 1) if axis == 0 else (1, 2 * TOLERANCE_PX + 1)
     wide = cv2.dilate(edges.astype(np.uint8), np.ones(across[::-1], np.uint8)) > 0
     covered, sharp = lateral_histogram(wide, axis, window_px), lateral_histogram(edges, axis, window_px)
-    strength = np.convolve(sharp, [0.5, 1.0, 0.5], mode="same")
+    strength = np.convolve(sharp, [0.5, 1.0, 0.5])[1:-1]
     taken = np.zeros(len(sharp), bool)
     lines: list[float] = []
     for peak in np.argsort(-strength, kind="stable"):

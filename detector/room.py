@@ -34,7 +34,7 @@ class View:
     """The coloured points of one scan, in the world frame."""
 
     points_in_world: NDArray[np.float32]
-    """(N, 3) scanned points [m]."""
+    """(N, 3) scanned points [m]; those that are not finite are left out."""
     colours: NDArray[np.uint8]
     """(N, 3) sRGB; meaningless where `coloured` is False."""
     coloured: NDArray[np.bool_]
@@ -60,6 +60,17 @@ class View:
         ):
             if np.shape(array) != shape:
                 raise DetectorError(f"View.{name}: expected shape {shape}, got {np.shape(array)}")
+        for name, array, kinds in (
+            ("points_in_world", self.points_in_world, (np.float32, np.float64)),
+            ("colours", self.colours, (np.uint8,)),
+            ("coloured", self.coloured, (np.bool_,)),
+        ):
+            if not isinstance(array, np.ndarray) or array.dtype not in kinds:
+                expected = " or ".join(kind.__name__ for kind in kinds)
+                raise DetectorError(f"View.{name}: expected an array of {expected}, got {np.asarray(array).dtype}")
+        for name, place in (("scanner_in_world", self.scanner_in_world), ("camera_in_world", self.camera_in_world)):
+            if not np.isfinite(place).all():
+                raise DetectorError(f"View.{name}: expected three finite coordinates, got {place}")
 
 
 @dataclass(frozen=True, eq=False)
