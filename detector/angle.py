@@ -76,25 +76,26 @@ def fit_leaf(
     """
     width = doorway.width
     sign, corner = (1.0, doorway.left) if hinge == "left" else (-1.0, doorway.right)
-    r, d = sign * (points[:, 0] - corner), points[:, 2]
-    chosen = _slice(points, doorway, parameters)
+    # beyond the leaf, too, to tell a wall that goes on
+    low, high = sorted((corner - sign * 0.5, corner + sign * (width + 0.8)))
+    index = np.flatnonzero((points[:, 0] > low) & (points[:, 0] < high) & _slice(points[:, 1], doorway, parameters))
+    r, d = sign * (points[index, 0] - corner), points[index, 2]
     # what lies in the wall's own plane beside the doorway is wall
+    chosen = np.hypot(r, d) < width + 0.8
     chosen &= ~((np.abs(d) < 0.07) & ((r < 0.02) | (r > width - 0.01)))
-    chosen &= (np.hypot(r, d) < width + 0.8) & (r > -0.5)  # beyond the leaf, to tell a wall that goes on
-    index = np.flatnonzero(chosen)
-    index = index[:: 1 + len(index) // MAX_SLICE]
-    if len(index) < MIN_POINTS:
+    kept = np.flatnonzero(chosen)
+    kept = kept[:: 1 + len(kept) // MAX_SLICE]
+    if len(kept) < MIN_POINTS:
         return None
-    plan = np.stack([r[index], d[index]], axis=1).astype(np.float64)
+    plan = np.stack([r[kept], d[kept]], axis=1).astype(np.float64)
     line = _consensus(plan, width, parameters)
     if line is None:
         return None
-    return _refine(plan, points[index, 1], line, (hinge, sign, corner), (doorway, parameters))
+    return _refine(plan, points[index[kept], 1], line, (hinge, sign, corner), (doorway, parameters))
 
 
-def _slice(points: NDArray[np.float32], doorway: Rectangle, parameters: DetectorParameters) -> NDArray[np.bool_]:
-    """(N,) the points that the line is fitted to: away from floor and lintel, or at half height."""
-    v = points[:, 1]
+def _slice(v: NDArray[np.float32], doorway: Rectangle, parameters: DetectorParameters) -> NDArray[np.bool_]:
+    """(N,) the points, by their height, that the line is fitted to: away from floor and lintel, or at half height."""
     middle = (doorway.bottom + doorway.top) / 2
     reach = SLICE if parameters.leaf_slice == "half-height" else 0.42 * doorway.height
     return np.abs(v - middle) < reach
@@ -102,33 +103,49 @@ def _slice(points: NDArray[np.float32], doorway: Rectangle, parameters: Detector
 
 def _consensus(plan: NDArray, width: float, parameters: DetectorParameters) -> _Line | None:
     """The hinge depth and angle whose ray from the hinge meets points over the most of the leaf's length."""
-    count = int(np.ceil(2 * parameters.max_angle / ANGLE_STEP)) + 1
-    bins = int(np.ceil((width + 0.4) / RADIAL_STEP))
-    leaf_bins = round(width / RADIAL_STEP)
-    first = round(NEAREST_RADIUS / RADIAL_STEP)
+    leaf_bins, first = round(width / RADIAL_STEP), round(NEAREST_RADIUS / RADIAL_STEP)
     best: _Line | None = None
     best_score = MIN_COVER
-    centres = (np.arange(count) + 0.5) * ANGLE_STEP - parameters.max_angle
-    for depth, offset in product(HINGE_DEPTHS, FACE_OFFSETS):
-        along, out = plan[:, 0] - offset, plan[:, 1] - depth
-        radius, angle = np.hypot(along, out), np.arctan2(out, along)
-        inside = (np.abs(angle) < parameters.max_angle) & (radius < bins * RADIAL_STEP)
-        column = ((angle[inside] + parameters.max_angle) / ANGLE_STEP).astype(np.int64)
-        cell = column * bins + (radius[inside] / RADIAL_STEP).astype(np.int64)
-        counts = np.bincount(cell, minlength=count * bins)[: count * bins].reshape(count, bins)
+    across, out = plan.T.astype(np.float32)
+    # the starts nearest to the jamb on the wall's face come first: of equal covers they are the better ones
+    starts = sorted(product(HINGE_DEPTHS, FACE_OFFSETS), key=_start_cost)
+    for depth, offset in starts:
+        cost = _start_cost((depth, offset))
+        if 1 + np.log1p(3 * len(plan)) / 100 - cost <= best_score:
+            break  # not even a leaf that is seen over its whole length would be better
+        counts = _polar_counts(across - np.float32(offset), out - np.float32(depth), width, parameters)
         # a leaf is as thick in angle as its points scatter, which near the hinge is more than one step
-        counts = counts + np.roll(counts, 1, axis=0) + np.roll(counts, -1, axis=0)
+        counts = counts + np.roll(counts, 1, axis=1) + np.roll(counts, -1, axis=1)
         occupied = counts >= max(3, len(plan) // 4000)
-        cover = occupied[:, first:leaf_bins].mean(axis=1)
-        beyond = occupied[:, leaf_bins + 3 :].mean(axis=1)  # a wall goes on where a leaf ends
-        # of equal covers the one that starts nearest to the jamb on the wall's face, and the one with more points
-        dense = np.log1p(counts[:, first:leaf_bins].sum(axis=1)) / 100
-        score = cover - 0.7 * beyond - 0.3 * abs(depth) - abs(offset) + dense
-        score[np.abs(centres) < parameters.closed_angle] = -1
+        cover = occupied[first:leaf_bins].mean(axis=0)
+        beyond = occupied[leaf_bins + 3 :].mean(axis=0)  # a wall goes on where a leaf ends
+        # of equal covers the one with more points
+        dense = np.log1p(counts[first:leaf_bins].sum(axis=0)) / 100
+        score = cover - 0.7 * beyond - cost + dense
+        angles = (np.arange(len(score)) + 0.5) * ANGLE_STEP - parameters.max_angle
+        score[np.abs(angles) < parameters.closed_angle] = -1
         i = int(score.argmax())
         if score[i] > best_score and cover[i] >= MIN_COVER:
-            best, best_score = _Line((offset, float(depth)), float(centres[i]), float(cover[i])), float(score[i])
+            best, best_score = _Line((offset, float(depth)), float(angles[i]), float(cover[i])), float(score[i])
     return best
+
+
+def _start_cost(start: tuple[float, float]) -> float:
+    """What the depth and offset of a leaf's start take off its score."""
+    return 0.3 * abs(float(start[0])) + abs(start[1])
+
+
+def _polar_counts(
+    along: NDArray[np.float32], out: NDArray[np.float32], width: float, parameters: DetectorParameters
+) -> NDArray[np.int64]:
+    """(radii, angles) number of points in steps of radius and of angle round the origin."""
+    angles = int(np.ceil(2 * parameters.max_angle / ANGLE_STEP)) + 1
+    radii = int(np.ceil((width + 0.4) / RADIAL_STEP))
+    radius, angle = np.sqrt(along * along + out * out), np.arctan2(out, along)
+    inside = (np.abs(angle) < parameters.max_angle) & (radius < radii * RADIAL_STEP)
+    cells = (radius[inside] / RADIAL_STEP).astype(np.int32) * angles
+    cells += ((angle[inside] + parameters.max_angle) / ANGLE_STEP).astype(np.int32)
+    return np.bincount(cells, minlength=radii * angles)[: radii * angles].reshape(radii, angles)
 
 
 def _refine(

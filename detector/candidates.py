@@ -50,7 +50,7 @@ class Scene:
     protrusion: float
     """What is nearer than this to the room is not in the doorway [m]."""
 
-    def sums(self, mask: Mask) -> NDArray[np.int64]:
+    def sums(self, mask: Mask) -> NDArray[np.int32]:
         """Integral image of a mask, above the floor's points."""
         upper = mask.copy()
         upper[self.lowest_row :] = False

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +21,10 @@ from detector.merging import merge
 from detector.openings import find_openings, visibility
 from detector.orthoimage import crop, image_shape, mark, orthoimage, sampling_gap
 from detector.outline import settle_sides
+from detector.parallel import each
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, WallResult
-from detector.room import DetectorError, Room, Wall
+from detector.room import DetectorError, Room, View, Wall
 from detector.wall_area import find_wall_area
 
 
@@ -39,13 +39,14 @@ def detect_doors(room: Room, parameters: DetectorParameters | None = None) -> li
         One result a wall, in the order of `Room.walls`. A wall that no view saw has empty images and no door.
 
     Raises:
-        DetectorError: The room has no view, or a wall is malformed or too large for `pixel_size`.
+        DetectorError: The room has no view or no floor, or a wall is malformed or too large for `pixel_size`.
     """
     parameters = parameters or DetectorParameters()
     if not room.views:
         raise DetectorError("Room.views: expected at least one view, got none")
-    with ThreadPoolExecutor(os.cpu_count()) as pool:  # walls share nothing, and their order is kept
-        return list(pool.map(partial(detect_wall, room, parameters=parameters), room.walls))
+    if not np.isfinite(room.floor_height):
+        raise DetectorError(f"Room.floor_height: expected a height, got {room.floor_height}")
+    return each(partial(detect_wall, room, parameters=parameters), room.walls)
 
 
 def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallResult:
@@ -59,10 +60,9 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         even = (
             even_light(look.views, look.cameras, wall.height, look.faces) if parameters.normalise_flash else look.views
         )
-        highlights = [
-            find_highlights(view, camera, wall.height, parameters)
-            for view, camera in zip(even, look.cameras, strict=True)
-        ]
+        highlights = each(
+            lambda seen: find_highlights(*seen, wall.height, parameters), zip(even, look.cameras, strict=True)
+        )
     with clock("merging"):
         merged = merge(even, highlights, look.cameras, wall.height, parameters) if even else _empty(wall, parameters)
     with clock("openings"):
@@ -114,24 +114,45 @@ class Look:
 def look_at(room: Room, wall: Wall, floor: float, parameters: DetectorParameters) -> Look:
     """Everything that is read from the points themselves, view by view (section 4)."""
     nothing = np.zeros(image_shape(wall, parameters), bool)
-    crops = {i: crop(view, wall, floor, parameters) for i, view in enumerate(room.views)}
-    points = {i: c for i, c in crops.items() if c is not None}
-    views, passed, blocked = [], nothing.copy(), nothing.copy()
-    for p in points.values():
-        gap = sampling_gap(p, parameters)
-        views.append(orthoimage(p, wall, gap, parameters))
-        passed |= mark(p.passed, wall, gap, parameters)
-        blocked |= mark(p.blocked, wall, parameters.max_gap_px, parameters)
-    faces = [wall_face(view, parameters) for view in views]
+    looks = each(lambda view: _look_from(view, wall, floor, parameters), room.views)
+    seeing = {i: look for i, look in enumerate(looks) if look is not None}
     return Look(
-        numbers=tuple(points),
-        views=views,
-        cameras=[p.camera for p in points.values()],
-        faces=faces,
-        face=np.any([nothing, *faces], axis=0),
-        passed=passed,
-        blocked=blocked,
-        around=np.concatenate([np.zeros((0, 3), np.float32), *(p.around for p in points.values())]),
+        numbers=tuple(seeing),
+        views=[look.view for look in seeing.values()],
+        cameras=[look.camera for look in seeing.values()],
+        faces=[look.face for look in seeing.values()],
+        face=np.any([nothing, *(look.face for look in seeing.values())], axis=0),
+        passed=np.any([nothing, *(look.passed for look in seeing.values())], axis=0),
+        blocked=np.any([nothing, *(look.blocked for look in seeing.values())], axis=0),
+        around=np.concatenate([np.zeros((0, 3), np.float32), *(look.around for look in seeing.values())]),
+    )
+
+
+class _ViewLook(NamedTuple):
+    """One view's part in a `Look`."""
+
+    view: Orthoimage
+    camera: NDArray[np.float64]
+    face: Mask
+    passed: Mask
+    blocked: Mask
+    around: NDArray[np.float32]
+
+
+def _look_from(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -> _ViewLook | None:
+    """What one view shows of the wall; None if nothing."""
+    points = crop(view, wall, floor, parameters)
+    if points is None:
+        return None
+    gap = sampling_gap(points, parameters)
+    image = orthoimage(points, wall, gap, parameters)
+    return _ViewLook(
+        view=image,
+        camera=points.camera,
+        face=wall_face(image, parameters),
+        passed=mark(points.passed, wall, gap, parameters),
+        blocked=mark(points.blocked, wall, parameters.max_gap_px, parameters),
+        around=points.around,
     )
 
 
@@ -150,6 +171,8 @@ def check_wall(wall: Wall) -> None:
         raise DetectorError("Wall.u: expected to be perpendicular to Wall.v")
     if wall.voxel_labels.ndim != 2 or 0 in wall.voxel_labels.shape:
         raise DetectorError(f"Wall.voxel_labels: expected rows x columns, got shape {wall.voxel_labels.shape}")
+    if not (np.isfinite(wall.voxel_size) and wall.voxel_size > 0):
+        raise DetectorError(f"Wall.voxel_size: expected a positive length, got {wall.voxel_size}")
 
 
 def _empty(wall: Wall, parameters: DetectorParameters) -> Orthoimage:

@@ -9,10 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.result import Mask, Orthoimage
+from detector.parallel import each
+from detector.result import Image, Mask, Orthoimage
 
 SAMPLES = 50_000
 """Pixels that are enough to measure light on."""
@@ -36,8 +38,10 @@ def pixel_grid(shape: tuple[int, int], pixel_size: float, height: float) -> tupl
 def incidence(image: Orthoimage, origin: NDArray[np.float64], height: float) -> tuple[NDArray, NDArray]:
     """Incidence angle [rad] and range [m] of each pixel (H, W), seen from a point in wall coordinates."""
     u, v = pixel_grid(image.depth.shape, image.pixel_size, height)
-    ranges = np.sqrt((u - origin[0]) ** 2 + (v - origin[1]) ** 2 + origin[2] ** 2).astype(np.float32)
-    return np.arccos(np.clip(np.float32(origin[2]) / ranges, -1, 1)), ranges
+    squares = (u - origin[0]) ** 2 + ((v - origin[1]) ** 2 + origin[2] ** 2)
+    ranges = np.sqrt(squares, out=squares).astype(np.float32)
+    cosines = np.float32(origin[2]) / ranges
+    return np.arccos(np.clip(cosines, -1, 1, out=cosines), out=cosines), ranges
 
 
 def even_light(
@@ -51,15 +55,16 @@ def even_light(
         height: Height of the wall [m].
         faces: (H, W) for each view: pixels of the wall's face.
     """
-    gains: list[NDArray] = []
-    for k, (image, camera) in enumerate(zip(images, cameras, strict=True)):
-        gain = falloff_gain(image, camera, height, faces[k])
-        ratios = [_ratio((images[j], gains[j], faces[j]), (image, gain, faces[k])) for j in range(k)]
+    lit = list(zip(images, cameras, faces, strict=True))
+    gains = each(lambda view: falloff_gain(view[0], view[1], height, view[2]), lit)
+    for k, (image, _, face) in enumerate(lit):
+        ratios = [_ratio((images[j], gains[j], faces[j]), (image, gains[k], face)) for j in range(k)]
         weights = [n for _, n in ratios]
         if sum(weights) > 0:
-            gain = gain * np.float32(np.clip(np.average([r for r, _ in ratios], weights=weights), 0.25, 4.0))
-        gains.append(gain)
-    return [replace(i, colour=_scaled(i.colour, g)) for i, g in zip(images, gains, strict=True)]
+            mean = np.average([r for r, _ in ratios], weights=weights)
+            gains[k] = gains[k] * np.float32(np.clip(mean, 0.25, 4.0))
+    colours = each(lambda view: _scaled(view[0].colour, view[1]), zip(images, gains, strict=True))
+    return [replace(image, colour=colour) for image, colour in zip(images, colours, strict=True)]
 
 
 def falloff_gain(image: Orthoimage, camera: NDArray[np.float64], height: float, face: Mask) -> NDArray[np.float32]:
@@ -73,9 +78,12 @@ def falloff_gain(image: Orthoimage, camera: NDArray[np.float64], height: float, 
     some = some[:: 1 + len(some) // SAMPLES]
     light = LINEAR[image.colour.reshape(-1, 3)[some]].mean(axis=1)
     ambient, flash = _fit(law.ravel()[some], light)
+    if ambient + flash <= 0:  # black, whatever the light
+        return np.ones(face.shape, np.float32)
     expected = ambient + flash * law
     typical = np.median(expected.ravel()[some])
-    return np.clip(np.where(expected > 0, typical / np.maximum(expected, 1e-6), 1.0), 0.25, 4.0).astype(np.float32)
+    np.maximum(expected, 1e-6, out=expected)
+    return np.clip(np.divide(typical, expected, out=expected), 0.25, 4.0, out=expected)
 
 
 def _ratio(reference: tuple[Orthoimage, NDArray, Mask], other: tuple[Orthoimage, NDArray, Mask]) -> tuple[float, int]:
@@ -103,9 +111,12 @@ def _fit(law: NDArray, luminance: NDArray) -> tuple[float, float]:
     return ambient, slope
 
 
-def _scaled(colour: NDArray[np.uint8], gain: NDArray) -> NDArray[np.uint8]:
+def _scaled(colour: Image, gain: NDArray[np.float32]) -> Image:
     """sRGB colours after multiplying their linear light."""
     light = np.linspace(0, 1, SRGB_TABLE + 1)
     table = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055) * 255
-    scaled = np.minimum(LINEAR[colour] * gain[..., None].astype(np.float32), 1)
-    return np.rint(table[(scaled * SRGB_TABLE + 0.5).astype(np.int32)]).astype(np.uint8)
+    scaled = np.asarray(cv2.multiply(cv2.LUT(colour, LINEAR), cv2.merge([gain] * 3)), np.float32)
+    np.minimum(scaled, 1, out=scaled)
+    scaled *= SRGB_TABLE
+    scaled += 0.5
+    return np.rint(table).astype(np.uint8).take(scaled.astype(np.intp))

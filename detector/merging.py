@@ -74,8 +74,7 @@ def matt_colours(
             here, there = (c.reshape(-1, 3)[some].mean(axis=1) for c in (own, other.colour[box]))
             matched = cv2.convertScaleAbs(other.colour[box], alpha=float(np.median(here / np.maximum(there, 1))))
             # of several, the brightest: one that is too dark by mistake takes nothing out
-            matched *= sees[..., None]
-            matt = np.maximum(matt, matched)
+            cv2.max(matt, cv2.bitwise_and(matched, matched, mask=sees.view(np.uint8)), dst=matt)
             told |= sees
         if not told.any():
             continue
@@ -115,11 +114,11 @@ def merge(
         # the floor keeps a pixel that only oblique views saw, whose weight would vanish in 32 bits
         weight = np.where(image.coloured, np.maximum(view_weights(angle, guessed, parameters), 1e-12), 0)
         total += weight
-        colour += weight[..., None] * seen
+        colour += cv2.multiply(seen, cv2.merge([weight] * 3), dtype=cv2.CV_32F)
         contour |= cv2.morphologyEx(guessed.astype(np.uint8), cv2.MORPH_GRADIENT, np.ones((5, 5), np.uint8)) > 0
     coloured = total > 0
-    merged = colour / np.where(coloured, total, 1)[..., None]
+    merged = cv2.divide(colour, cv2.merge([np.where(coloured, total, np.float32(1))] * 3))
+    contour &= coloured
     if contour.any():
-        smooth = cv2.blur(merged, (CONTOUR_FILTER, CONTOUR_FILTER))
-        merged = np.where(contour[..., None] & coloured[..., None], smooth, merged)
-    return Orthoimage(np.rint(merged).astype(np.uint8), coloured, depth, images[0].pixel_size)
+        merged[contour] = cv2.blur(merged, (CONTOUR_FILTER, CONTOUR_FILTER))[contour]
+    return Orthoimage(np.asarray(cv2.convertScaleAbs(merged), np.uint8), coloured, depth, images[0].pixel_size)

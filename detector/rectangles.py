@@ -43,7 +43,7 @@ def find_lines(edges: Mask, axis: int, window_px: int, share: float, limit: int 
     across = (2 * TOLERANCE_PX + 1, 1) if axis == 0 else (1, 2 * TOLERANCE_PX + 1)
     wide = cv2.dilate(edges.astype(np.uint8), np.ones(across[::-1], np.uint8)) > 0
     covered, sharp = lateral_histogram(wide, axis, window_px), lateral_histogram(edges, axis, window_px)
-    strength = np.convolve(sharp, [0.5, 1.0, 0.5], mode="same")
+    strength = np.convolve(sharp, [0.5, 1.0, 0.5])[1:-1]
     taken = np.zeros(len(sharp), bool)
     lines: list[float] = []
     for peak in np.argsort(-strength, kind="stable"):
@@ -65,14 +65,12 @@ def pairs(lines: NDArray[np.float64], shortest: float, longest: float) -> NDArra
     return np.stack([i, j], axis=1)[(distance >= shortest) & (distance <= longest)]
 
 
-def integral(mask: NDArray) -> NDArray[np.int64]:
+def integral(mask: NDArray) -> NDArray[np.int32]:
     """(H + 1, W + 1) sums over all pixels above and to the left."""
-    sums = np.zeros((mask.shape[0] + 1, mask.shape[1] + 1), np.int64)
-    sums[1:, 1:] = mask.astype(np.int64).cumsum(axis=0).cumsum(axis=1)
-    return sums
+    return np.asarray(cv2.integral(mask.astype(np.uint8)), np.int32)
 
 
-def box_sums(sums: NDArray[np.int64], boxes: NDArray[np.int64]) -> NDArray[np.int64]:
+def box_sums(sums: NDArray[np.int32], boxes: NDArray[np.int64]) -> NDArray[np.int32]:
     """(N,) sums over boxes (N, 4) of top, left, bottom, right, half open, clipped to the image."""
     top, bottom = (np.clip(boxes[:, i], 0, sums.shape[0] - 1) for i in (0, 2))
     left, right = (np.clip(boxes[:, i], 0, sums.shape[1] - 1) for i in (1, 3))

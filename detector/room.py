@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+THINNED_TO = 600_000
+"""Points of a view that are enough for shadows and leaves."""
 
 
 class DetectorError(ValueError):
@@ -30,7 +34,7 @@ class View:
     """The coloured points of one scan, in the world frame."""
 
     points_in_world: NDArray[np.float32]
-    """(N, 3) scanned points [m]."""
+    """(N, 3) scanned points [m]; those that are not finite are left out."""
     colours: NDArray[np.uint8]
     """(N, 3) sRGB; meaningless where `coloured` is False."""
     coloured: NDArray[np.bool_]
@@ -39,6 +43,11 @@ class View:
     """(3,) origin of the laser beams [m]."""
     camera_in_world: NDArray[np.float64]
     """(3,) centre of the camera, the same for all photographs of the scan [m]."""
+
+    @cached_property
+    def thinned_points(self) -> NDArray[np.float32]:
+        """(M, 3) some of the points, in the world frame, enough for shadows and leaves [m]."""
+        return np.ascontiguousarray(self.points_in_world[:: 1 + 2 * (len(self.points_in_world) // (2 * THINNED_TO))])
 
     def __post_init__(self) -> None:
         n = len(self.points_in_world)
@@ -51,6 +60,17 @@ class View:
         ):
             if np.shape(array) != shape:
                 raise DetectorError(f"View.{name}: expected shape {shape}, got {np.shape(array)}")
+        for name, array, kinds in (
+            ("points_in_world", self.points_in_world, (np.float32, np.float64)),
+            ("colours", self.colours, (np.uint8,)),
+            ("coloured", self.coloured, (np.bool_,)),
+        ):
+            if not isinstance(array, np.ndarray) or array.dtype not in kinds:
+                expected = " or ".join(kind.__name__ for kind in kinds)
+                raise DetectorError(f"View.{name}: expected an array of {expected}, got {np.asarray(array).dtype}")
+        for name, place in (("scanner_in_world", self.scanner_in_world), ("camera_in_world", self.camera_in_world)):
+            if not np.isfinite(place).all():
+                raise DetectorError(f"View.{name}: expected three finite coordinates, got {place}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +93,7 @@ class Wall:
     voxel_size: float = 0.2
     """Side of a voxel [m]."""
 
-    @property
+    @cached_property
     def normal(self) -> NDArray[np.float64]:
         """(3,) unit vector into the room."""
         return np.cross(self.u, self.v)

@@ -17,6 +17,8 @@ DEPTH_SLACK = 0.012
 """Least half width of a cluster's box in depth [m]: 4 sigma of the scanner."""
 ONE_COLOUR = 0.03
 """Standard deviation below which all seeds are one cluster, of 1."""
+BLOCK = 128
+"""Rows of a matrix of distances that stay in the processor's cache."""
 BORDER_PX = 8
 """Width of the left, right and top borders that the wall shows on."""
 
@@ -29,12 +31,13 @@ def find_wall_area(merged: Orthoimage, parameters: DetectorParameters) -> WallAr
     if len(seeds) == 0:
         nothing = np.zeros(known.shape, np.int32)
         return WallArea(seeds, np.zeros(0, np.int32), nothing, nothing > 0)
-    assigned = adaptive_kmeans(means, parameters)
+    distances = pair_distances(means, means)
+    assigned = adaptive_kmeans(means, distances, parameters)
     # The paper removes seeds whose |silhouette| is *higher* than delta, which would throw away the consistent ones that
     # the step is to keep; read as: keep s >= delta. One cluster has no silhouette.
     kept = assigned
     if assigned.max() > 1:
-        kept = np.where(silhouettes(means, assigned) >= parameters.delta, assigned, 0)
+        kept = np.where(silhouettes(distances, assigned) >= parameters.delta, assigned, 0)
     clusters = segment(values, known, means, kept, parameters)
     return WallArea(seeds, kept, clusters, clusters == _wall_cluster(clusters) if clusters.any() else clusters > 0)
 
@@ -42,7 +45,7 @@ def find_wall_area(merged: Orthoimage, parameters: DetectorParameters) -> WallAr
 def rgbd(merged: Orthoimage, parameters: DetectorParameters) -> NDArray[np.float32]:
     """(H, W, 4) colour in 0..1 and depth over `depth_scale`: four components that count alike."""
     depth = np.nan_to_num(merged.depth) / np.float32(parameters.depth_scale)
-    return np.dstack([merged.colour.astype(np.float32) / 255, depth.astype(np.float32)])
+    return np.asarray(cv2.merge([*cv2.split(merged.colour.astype(np.float32) / 255), depth]), np.float32)
 
 
 def coherent_seeds(
@@ -66,17 +69,22 @@ def coherent_seeds(
     return seeds[coherent], patches.mean(axis=1)[coherent]
 
 
-def adaptive_kmeans(means: NDArray[np.float32], parameters: DetectorParameters) -> NDArray[np.int32]:
-    """(S,) cluster of each seed, from 1; the number of clusters is the one with the best mean silhouette."""
+def adaptive_kmeans(
+    means: NDArray[np.float32], distances: NDArray[np.float32], parameters: DetectorParameters
+) -> NDArray[np.int32]:
+    """(S,) cluster of each seed, from 1; the number of clusters is the one with the best mean silhouette.
+
+    Args:
+        distances: (S, S) between the seeds' means.
+    """
     one = np.ones(len(means), np.int32)
     if len(means) < 4 or (means.std(axis=0) < ONE_COLOUR).all():
         return one
     best, best_score = one, parameters.min_silhouette
-    distances = _distances(means, means)
     for k in range(2, min(parameters.max_clusters, len(means) - 1) + 1):
         assigned = kmeans(means, k)
         if len(np.unique(assigned)) == k:
-            score = float(silhouettes(means, assigned, distances).mean())
+            score = float(silhouettes(distances, assigned).mean())
             if score > best_score + 1e-6:
                 best, best_score = assigned, score
     return best
@@ -89,29 +97,32 @@ def kmeans(samples: NDArray[np.float32], k: int) -> NDArray[np.int32]:
         rng = np.random.default_rng(start)
         centres = samples[[rng.integers(len(samples))]]
         while len(centres) < k:
-            nearest = _distances(samples, centres).min(axis=1).astype(np.float64) ** 2
+            nearest = pair_distances(samples, centres).min(axis=1).astype(np.float64) ** 2
             if nearest.sum() == 0:
                 break
             centres = np.vstack([centres, samples[[rng.choice(len(samples), p=nearest / nearest.sum())]]])
-        assigned = _distances(samples, centres).argmin(axis=1)
+        assigned = pair_distances(samples, centres).argmin(axis=1)
         for _ in range(ITERATIONS):
             counts = np.bincount(assigned, minlength=len(centres))
             sums = np.stack(
                 [np.bincount(assigned, samples[:, i], len(centres)) for i in range(samples.shape[1])], axis=1
             )
             centres = np.where(counts[:, None] > 0, sums / np.maximum(counts, 1)[:, None], centres).astype(np.float32)
-            before, assigned = assigned, _distances(samples, centres).argmin(axis=1)
+            before, assigned = assigned, pair_distances(samples, centres).argmin(axis=1)
             if np.array_equal(before, assigned):
                 break
-        cost = float((_distances(samples, centres).min(axis=1) ** 2).sum())
+        cost = float((pair_distances(samples, centres).min(axis=1) ** 2).sum())
         if cost < best_cost - 1e-9:
             best, best_cost = assigned.astype(np.int32) + 1, cost
     return best
 
 
-def silhouettes(samples: NDArray, assigned: NDArray[np.int32], distances: NDArray | None = None) -> NDArray[np.float64]:
-    """(S,) silhouette (b - a) / max(a, b) of each sample; 0 for one that is alone in its cluster."""
-    distances = _distances(samples, samples) if distances is None else distances
+def silhouettes(distances: NDArray[np.float32], assigned: NDArray[np.int32]) -> NDArray[np.float64]:
+    """(S,) silhouette (b - a) / max(a, b) of each sample; 0 for one that is alone in its cluster.
+
+    Args:
+        distances: (S, S) between the samples.
+    """
     numbers = np.unique(assigned)
     members = (assigned[:, None] == numbers).astype(np.float32)
     counts = members.sum(axis=0)
@@ -129,17 +140,25 @@ def segment(
     """(H, W) cluster of each pixel by thresholds on all four components; exclusive: the nearer cluster if two match."""
     smooth = cv2.blur(values, (3, 3))
     slack = np.array([COLOUR_SLACK] * 3 + [DEPTH_SLACK / parameters.depth_scale], np.float32)
-    best, result = np.full(known.size, np.inf, np.float32), np.zeros(known.size, np.int32)
+    result, contested = np.zeros(known.size, np.int32), np.zeros(known.size, bool)
+    boxes = {}
     for number in range(1, kept.max(initial=0) + 1):
         members = means[kept == number]
         if len(members) == 0:
             continue
         low, centre, high = np.quantile(members, [0.01, 0.5, 0.99], axis=0).astype(np.float32)
         within = cv2.inRange(smooth, tuple((low - slack).tolist()), tuple((high + slack).tolist()))
-        matches = np.flatnonzero(known & (within > 0))
-        distance = ((smooth.reshape(-1, 4).take(matches, axis=0) - centre) ** 2).sum(axis=1)
-        nearer = distance < best.take(matches)
-        best[matches[nearer]], result[matches[nearer]] = distance[nearer], number
+        matches = known.ravel() & (within.ravel() > 0)
+        contested |= matches & (result > 0)
+        result[matches] = number
+        boxes[number] = centre, matches
+    pixels = np.flatnonzero(contested)
+    nearest = np.full(len(pixels), np.inf, np.float32)
+    colours = smooth.reshape(-1, 4).take(pixels, axis=0)
+    for number, (centre, matches) in boxes.items():
+        distance = np.where(matches.take(pixels), ((colours - centre) ** 2).sum(axis=1), np.inf)
+        result[pixels[distance < nearest]] = number
+        nearest = np.minimum(nearest, distance)
     return result.reshape(known.shape)
 
 
@@ -154,12 +173,14 @@ def _wall_cluster(clusters: NDArray[np.int32]) -> int:
     return int(counts.argmax())
 
 
-def _distances(a: NDArray, b: NDArray) -> NDArray[np.float32]:
+def pair_distances(a: NDArray, b: NDArray) -> NDArray[np.float32]:
     """(N, M) Euclidean distances, summed component by component so that the order of summation is fixed."""
     if len(b) < len(a):
-        return _distances(b, a).T  # the long axis last: short rows are slow
-    squares, difference = np.zeros((2, len(a), len(b)), np.float32)
-    for i in range(a.shape[1]):
-        np.subtract(a[:, i, None], b[None, :, i], out=difference)
-        squares += np.square(difference, out=difference)
+        return pair_distances(b, a).T  # the long axis last: short rows are slow
+    squares = np.zeros((len(a), len(b)), np.float32)
+    for start in range(0, len(a), BLOCK):
+        rows, part = a[start : start + BLOCK], squares[start : start + BLOCK]
+        for i in range(a.shape[1]):
+            difference = rows[:, i, None] - b[None, :, i]
+            part += np.square(difference, out=difference)
     return np.sqrt(squares, out=squares)

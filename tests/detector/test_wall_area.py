@@ -5,10 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from detector.edges import colour_threshold, depth_edges, di_zenzo, find_edges
+from detector.edges import colour_threshold, depth_edges, di_zenzo, find_edges, structure_tensor
 from detector.openings import Visibility
 from detector.parameters import DetectorParameters
-from detector.wall_area import adaptive_kmeans, coherent_seeds, find_wall_area, kmeans, rgbd, silhouettes
+from detector.wall_area import (
+    adaptive_kmeans,
+    coherent_seeds,
+    find_wall_area,
+    kmeans,
+    pair_distances,
+    rgbd,
+    silhouettes,
+)
 from tests.detector.conftest import plain_image
 
 PARAMETERS = DetectorParameters(pixel_size=0.01)
@@ -17,7 +25,9 @@ PARAMETERS = DetectorParameters(pixel_size=0.01)
 def test_the_silhouette_is_the_one_of_the_definition() -> None:
     # at 0 and 2, and at 10: a = 2 to the partner, b = 10 and 8 to the other cluster; alone: 0
     samples = np.array([[0.0], [2.0], [10.0]], np.float32)
-    np.testing.assert_allclose(silhouettes(samples, np.array([1, 1, 2])), [0.8, 0.75, 0.0], atol=1e-6)
+    np.testing.assert_allclose(
+        silhouettes(pair_distances(samples, samples), np.array([1, 1, 2])), [0.8, 0.75, 0.0], atol=1e-6
+    )
 
 
 def test_kmeans_separates_two_groups_whatever_their_order() -> None:
@@ -30,13 +40,13 @@ def test_the_number_of_clusters_is_found() -> None:
     rng = np.random.default_rng(0)
     centres = np.array([[0.1, 0.1, 0.1, 0], [0.5, 0.5, 0.5, 0], [0.9, 0.9, 0.9, 0]])
     samples = (centres[np.arange(90) % 3] + rng.normal(0, 0.01, (90, 4))).astype(np.float32)
-    assert len(np.unique(adaptive_kmeans(samples, PARAMETERS))) == 3
+    assert len(np.unique(adaptive_kmeans(samples, pair_distances(samples, samples), PARAMETERS))) == 3
 
 
 def test_a_wall_of_one_colour_is_one_cluster() -> None:
     rng = np.random.default_rng(0)
     samples = (0.5 + rng.normal(0, 0.01, (200, 4))).astype(np.float32)
-    assert (adaptive_kmeans(samples, PARAMETERS) == 1).all()
+    assert (adaptive_kmeans(samples, pair_distances(samples, samples), PARAMETERS) == 1).all()
 
 
 def test_seeds_on_an_edge_or_beside_a_hole_are_not_coherent() -> None:
@@ -75,7 +85,7 @@ def test_without_any_colour_depth_decides() -> None:
 def test_di_zenzo_gives_the_slope_of_a_ramp_in_colour_space() -> None:
     # each channel rises by 3, 4 and 0 hundredths a column: together by 0.05
     dx = np.tile(np.array([0.03, 0.04, 0.0], np.float32), (5, 5, 1))
-    np.testing.assert_allclose(di_zenzo(dx, np.zeros_like(dx)), 0.05, rtol=1e-5)
+    np.testing.assert_allclose(di_zenzo(*structure_tensor(dx, np.zeros_like(dx))), 0.05, rtol=1e-5)
 
 
 def test_otsu_separates_a_strong_edge_from_texture_and_the_cap_keeps_a_faint_one() -> None:
