@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 
 from mission.bench.walls.doors import build_door
-from mission.bench.walls.floor_plans import reflex_corners, side_lengths
+from mission.bench.walls.floor_plans import grown, reflex_corners, side_lengths
 from mission.bench.walls.kit import Body, Kit
-from mission.bench.walls.plans import Occluder, RoomPlan, WallPlan
+from mission.bench.walls.plans import RoomPlan, WallPlan
 from mission.bench.walls.shell import build_beyond, build_shell
+
+_UNDER_WALLS = 0.05
+"""How far floor and ceiling reach into the walls, so that no light falls between [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,21 +58,13 @@ def build(plan: RoomPlan, rng: np.random.Generator) -> Building:
             build_beyond(kit, body, wall, size, rng)
         _build_things(kit, body, wall)
         for index, occluder in enumerate(wall.occluders):
-            place = [occluder_x(wall, occluder, 0.0), -occluder.away, occluder.z]
+            place = [wall.doors[occluder.door].left, -occluder.away, occluder.z]  # until it is fitted
             occluders[number, index] = body.add_body(name=f"occluder {number + 1}.{index + 1}", pos=place)
             occluder.thing.build(kit, occluders[number, index])
     for x, y, turned, thing in plan.stood:
         thing.build(kit, room.add_body(pos=[x, y, 0], quat=_about_z(turned)))
     kit.spec.assets = kit.assets
     return Building(kit, plan, position, turn, leaves, occluders)
-
-
-def occluder_x(wall: WallPlan, occluder: Occluder, covered: float) -> float:
-    """Where the middle of an occluder stands along its wall if it covers so much of the door's width from its side."""
-    door, half = wall.doors[occluder.door], occluder.thing.width / 2
-    if occluder.side == "left":
-        return door.left + covered * door.width - half
-    return door.right - covered * door.width + half
 
 
 def _add_wall_body(room: Body, plan: RoomPlan, number: int) -> Body:
@@ -81,7 +75,7 @@ def _add_wall_body(room: Body, plan: RoomPlan, number: int) -> Body:
 
 def _build_floor_and_ceiling(kit: Kit, room: Body, plan: RoomPlan) -> None:
     first = int(reflex_corners(plan.corners).argmax())
-    corners = np.roll(plan.corners, -first, axis=0)
+    corners = np.roll(grown(plan.corners, _UNDER_WALLS), -first, axis=0)
     kit.prism(room, corners, -0.1, 0.0, plan.floor)
     kit.prism(room, corners, plan.height, plan.height + 0.1, plan.ceiling)
 
@@ -96,11 +90,3 @@ def _build_things(kit: Kit, body: Body, wall: WallPlan) -> None:
 
 def _about_z(turn: float) -> list[float]:
     return [float(np.cos(turn / 2)), 0.0, 0.0, float(np.sin(turn / 2))]
-
-
-def state(building: Building) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """The room compiled, as it stands in its XML."""
-    model = building.kit.spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    return model, data

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import mujoco
 import numpy as np
 
@@ -33,20 +35,23 @@ def build_door(kit: Kit, wall: Body, door: DoorPlan, thickness: float, name: str
     _build_frame(kit, wall, door, thickness)
     if door.slides:
         return (_build_slide(kit, wall, door, name),)
-    if door.leaves == 1:
-        _build_leaf(kit, wall, door, (door.left, door.right), door.hinge == "left", door.openings[0], name)
-        return (name,)
-    middle = (door.left + door.right) / 2
-    names = f"{name} left", f"{name} right"
-    sides = (door.left, middle - door.gap / 2), (middle + door.gap / 2, door.right)
-    for leaf, side, hinged_left, opening in zip(names, sides, (True, False), door.openings, strict=True):
-        _build_leaf(kit, wall, door, side, hinged_left, opening, leaf)
-    return names
+    leaves: list[_Leaf] = [_Leaf(name, door.left, door.right, door.hinge == "left", door.openings[0])]
+    if door.leaves == 2:
+        middle = (door.left + door.right) / 2
+        first = _Leaf(f"{name} left", door.left, middle - door.gap / 2, True, door.openings[0])
+        leaves = [first, _Leaf(f"{name} right", middle + door.gap / 2, door.right, False, door.openings[1])]
+    for leaf in leaves:
+        _build_leaf(kit, wall, door, leaf)
+    return tuple(leaf.name for leaf in leaves)
 
 
-def leaf_positions(door: DoorPlan) -> tuple[float, ...]:
-    """Joint position of each leaf, left to right [rad; m for a slide]."""
-    return door.openings
+@dataclass(frozen=True)
+class _Leaf:
+    name: str
+    left: float
+    right: float
+    hinged_left: bool
+    opening: float
 
 
 def _build_frame(kit: Kit, wall: Body, door: DoorPlan, thickness: float) -> None:
@@ -85,13 +90,11 @@ def _surround(kit: Kit, wall: Body, inner: Hole, width: float, depths: tuple[flo
     kit.box(wall, (inner.left, near, inner.top), (inner.right, far, top), finish)
 
 
-def _build_leaf(
-    kit: Kit, wall: Body, door: DoorPlan, side: tuple[float, float], hinged_left: bool, opening: float, name: str
-) -> None:
-    inward = door.opens == "inward"
-    hinge = side[0] if hinged_left else side[1]
+def _build_leaf(kit: Kit, wall: Body, door: DoorPlan, leaf: _Leaf) -> None:
+    inward, name, opening = door.opens == "inward", leaf.name, leaf.opening
+    hinge = leaf.left if leaf.hinged_left else leaf.right
     face = door.recess if inward else door.recess + LEAF_THICKNESS
-    turn = -1.0 if hinged_left == inward else 1.0  # about z, to open
+    turn = -1.0 if leaf.hinged_left == inward else 1.0  # about z, to open
     body = wall.add_body(name=name, pos=[hinge, face, 0], quat=[np.cos(opening / 2), 0, 0, turn * np.sin(opening / 2)])
     body.add_joint(
         name=f"{name} hinge",
@@ -104,11 +107,12 @@ def _build_leaf(
         frictionloss=0.5,
         armature=0.02,
     )
-    width = side[1] - side[0]
+    width = leaf.right - leaf.left
     near = 0.0 if inward else -LEAF_THICKNESS
-    span = (0.0, width) if hinged_left else (-width, 0.0)
+    span = (0.0, width) if leaf.hinged_left else (-width, 0.0)
     _build_panel(kit, body, door, span, near)
-    _build_handle(kit, body, door, span[1] if hinged_left else span[0], 1.0 if hinged_left else -1.0, near)
+    edge, along = (width, 1.0) if leaf.hinged_left else (-width, -1.0)
+    _build_handle(kit, body, door, edge, along, near)
     for height in (0.2, door.height / 2, door.height - 0.2):
         out = -0.004 if inward else 0.004
         kit.cylinder(body, (0, out, height - 0.045), (0, out, height + 0.045), 0.007, door.metal)

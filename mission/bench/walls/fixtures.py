@@ -140,7 +140,7 @@ def random_notice(rng: np.random.Generator) -> Sheet:
 def random_sign(rng: np.random.Generator) -> Sheet:
     """A safety sign."""
     colour = (GREEN.colour, RED.colour, (0.1, 0.25, 0.55))[rng.integers(3)]
-    finish = Finish(colour, textures.sign, 0.02, seed=seed(rng), specular=0.05)
+    finish = Finish(colour, textures.sign, 0.02, seed=seed(rng))
     width = float(rng.uniform(0.2, 0.32))
     return on_sheet(Sheet(width, width * 0.66, finish, depth=0.003))
 
@@ -149,7 +149,7 @@ def random_board(rng: np.random.Generator) -> Sheet:
     """A white or a pin board."""
     width, height = float(rng.uniform(0.9, 1.5)), float(rng.uniform(0.7, 1.0))
     if rng.random() < 0.5:
-        return Sheet(width, height, plain((0.95, 0.95, 0.95), specular=0.1, roughness=0.5), 0.02, STEEL)
+        return Sheet(width, height, plain((0.95, 0.95, 0.95), specular=0.2, roughness=0.25), 0.02, STEEL)
     cork = Finish((0.68, 0.50, 0.32), textures.carpet, 0.12, (0.5, 0.5), seed(rng))
     return Sheet(width, height, cork, 0.015, wood(rng, (0.5, 0.35, 0.2)))
 

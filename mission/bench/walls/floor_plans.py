@@ -34,6 +34,15 @@ def angled(width: float, depth: float, notch: tuple[float, float]) -> Corners:
     return np.array([[0, depth], [width, depth], [width, 0], [notch[0], 0], [notch[0], notch[1]], [0, notch[1]]], float)
 
 
+def grown(corners: Corners, by: float) -> Corners:
+    """The outline with all walls moved out [m]."""
+    along = np.roll(corners, -1, axis=0) - corners
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    after = np.column_stack([-along[:, 1], along[:, 0]])  # outward: clockwise, the room is on the right
+    before = np.roll(after, 1, axis=0)
+    return np.asarray(corners + by * (before + after) / (1 + np.einsum("pk,pk->p", before, after))[:, None])
+
+
 def side_lengths(corners: Corners) -> NDArray[np.float64]:
     """(P,) lengths of the walls [m]."""
     return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1))

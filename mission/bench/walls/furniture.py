@@ -114,6 +114,7 @@ class Plant:
     height: float
     spread: float
     seed: int
+    leaves: int = 24
 
     @property
     def width(self) -> float:
@@ -129,7 +130,7 @@ class Plant:
         kit.cylinder(body, (0, middle, 0), (0, middle, 0.36), 0.17, plain((0.66, 0.36, 0.25)))
         kit.tube(body, (0, middle, 0.36), (0, middle, self.height - 0.3), 0.02, plain((0.35, 0.25, 0.15)))
         green = [plain(pick(rng, _LEAVES)) for _ in range(3)]
-        for k in range(22):
+        for k in range(self.leaves):
             radius = self.spread * float(np.sqrt(rng.random())) * 0.75
             turn = float(rng.uniform(0, 2 * np.pi))
             z = float(rng.uniform(0.55, self.height - 0.1))
@@ -172,14 +173,14 @@ class Screen:
     width: float
     height: float
     finish: Finish
-    depth: float = 0.4
+    depth: float = 0.3
 
     def build(self, kit: Kit, body: Body) -> None:
         half = self.width / 2
-        kit.box(body, (-half, -0.215, 0.12), (half, -0.185, self.height), self.finish)
+        kit.box(body, (-half, -0.165, 0.12), (half, -0.135, self.height), self.finish)
         for x in (-half + 0.03, half - 0.03):
-            kit.box(body, (x - 0.02, -0.4, 0), (x + 0.02, 0, 0.04), STEEL)
-            kit.box(body, (x - 0.015, -0.225, 0.04), (x + 0.015, -0.175, self.height), STEEL)
+            kit.box(body, (x - 0.02, -0.3, 0), (x + 0.02, 0, 0.04), STEEL)
+            kit.box(body, (x - 0.015, -0.175, 0.04), (x + 0.015, -0.125, self.height), STEEL)
 
 
 @dataclass(frozen=True)
@@ -235,17 +236,17 @@ class CoatStand:
 
 def wood_colour(rng: np.random.Generator) -> Finish:
     """Plain wood or paint, for furniture."""
-    return plain(pick(rng, WOODS if rng.random() < 0.6 else DOOR_PAINTS, 0.05), specular=0.06, roughness=0.6)
+    return plain(pick(rng, WOODS if rng.random() < 0.6 else DOOR_PAINTS, 0.05))
 
 
 def fabric(rng: np.random.Generator) -> Finish:
     """Upholstery or curtain cloth."""
-    return plain(pick(rng, _FABRICS, 0.06), specular=0.0)
+    return plain(pick(rng, _FABRICS, 0.06))
 
 
 def screen_cloth(rng: np.random.Generator) -> Finish:
     """The cloth of a partition."""
-    return Finish(pick(rng, _FABRICS, 0.08), textures.carpet, 0.06, (0.6, 0.6), seed(rng), specular=0.0)
+    return Finish(pick(rng, _FABRICS, 0.08), textures.carpet, 0.06, (0.6, 0.6), seed(rng))
 
 
 def random_low(rng: np.random.Generator) -> Thing:

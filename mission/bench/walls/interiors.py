@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mission.bench.walls import finishes, fixtures, floor_plans, furniture
 from mission.bench.walls.finishes import BRASS, DOOR_PAINTS, FROSTED, STEEL, WALL_PAINTS, WHITE, WOODS, Finish
+from mission.bench.walls.hidden import scanner_origins
 from mission.bench.walls.plans import (
     NO_FRAME,
     DoorPlan,
@@ -38,7 +39,7 @@ class Site:
     paint: Finish
     """Of the room."""
     feet: tuple[float, ...]
-    """Places along the wall that scan places stand square to [m]."""
+    """Places along the wall that the scanner stands square to [m]."""
 
 
 Maker = Callable[[np.random.Generator, Site], WallPlan]
@@ -67,7 +68,7 @@ def room(rng: np.random.Generator, category: str, makers: Sequence[Maker], paint
     skirting, tall = skirting_finish(rng), float(rng.uniform(0.06, 0.11))
     walls: list[WallPlan] = []
     for side in range(len(corners)):
-        site = Site(float(lengths[side]), height, paint, _feet(corners, side, places))
+        site = Site(float(lengths[side]), height, paint, _feet(corners, side, scanner_origins(places)))
         if side in judged:
             walls.append(makers[int(np.flatnonzero(order == side)[0])](rng, site))
         else:
@@ -109,7 +110,8 @@ def door_finish(rng: np.random.Generator, wall: Finish) -> Finish:
     """Veneer or paint, unlike the wall."""
     if rng.random() < 0.45:
         return finishes.wood(rng, finishes.unlike(rng, WOODS, wall.colour))
-    return finishes.plain(finishes.unlike(rng, DOOR_PAINTS, wall.colour, 0.12), specular=0.06, roughness=0.6)
+    paint = finishes.plain(finishes.unlike(rng, DOOR_PAINTS, wall.colour, 0.12))
+    return finishes.glossy(rng, paint) if rng.random() < 0.3 else paint
 
 
 def random_frame(rng: np.random.Generator, door: Finish) -> Frame:
@@ -210,10 +212,10 @@ def _watched(corners: NDArray[np.float64], judged: NDArray[np.int_]) -> NDArray[
     return np.concatenate([starts + 0.3 * along + before, ends - 0.3 * along + before])
 
 
-def _feet(corners: NDArray[np.float64], side: int, places: Sequence[tuple[float, float, float]]) -> tuple[float, ...]:
+def _feet(corners: NDArray[np.float64], side: int, scanners: NDArray[np.float64]) -> tuple[float, ...]:
     start, end = corners[side], corners[(side + 1) % len(corners)]
     along = (end - start) / np.linalg.norm(end - start)
-    return tuple(float((np.array([x, y]) - start) @ along) for x, y, _ in places)
+    return tuple(float((np.array([x, y]) - start) @ along) for x, y, _ in scanners)
 
 
 def _middle_table(

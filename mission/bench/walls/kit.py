@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import cv2
 import mujoco
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from mission.bench.walls.finishes import Finish
 
-Body = mujoco.MjsBody
+Body: TypeAlias = mujoco.MjsBody
 Point = tuple[float, float, float]
 
 
@@ -48,7 +49,7 @@ class Kit:
         )
 
     def slab(self, body: Body, lower: Point, upper: Point, finish: Finish, holes: Sequence[Hole] = ()) -> None:
-        """A box with rectangular holes through it along y; its picture goes on from slab to slab of one body."""
+        """A box with rectangular holes through it along y."""
         vertices, coordinates = slab_quads(lower, upper, holes, finish.period)
         self._mesh(body, vertices, coordinates, finish)
 
@@ -152,9 +153,10 @@ def slab_quads(
         if not solid[i, k + 1]:
             quads.append([(x0, near, z1), (x1, near, z1), (x1, far, z1), (x0, far, z1)])
     vertices = np.array(quads)
-    # the picture bends round the edges; v = 0 is the picture's lower edge
-    u = vertices[..., 0] + (vertices[..., 1] - near)
-    v = vertices[..., 2] + np.where(np.ptp(vertices[..., 2], axis=1) == 0, 1, 0)[:, None] * vertices[..., 1]
+    # the picture starts in the lower left corner and bends round the edges
+    level = np.ptp(vertices[..., 2], axis=1) == 0
+    u = vertices[..., 0] - lower[0] + np.where(level, 0, 1)[:, None] * (vertices[..., 1] - near)
+    v = vertices[..., 2] - lower[2] + np.where(level, 1, 0)[:, None] * (vertices[..., 1] - near)
     return vertices, np.stack([u / period[0], v / period[1]], axis=-1)
 
 

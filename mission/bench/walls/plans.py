@@ -143,12 +143,12 @@ class Occluder:
 
     door: int
     """Index of the door in the wall."""
-    side: Side
-    """From which it hides it."""
     away: float
     thing: Thing
     share: float
     """Of the panel that it is to hide, 0..1."""
+    most: float = 0.48
+    """Of the door's width that it may stand before; what is tall must leave a way through."""
     z: float = 0.0
     """Of its lower end above the floor [m]."""
 

@@ -6,13 +6,13 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-import mujoco
 import numpy as np
 
 from mission.bench.walls import occlusion, semi_open, simple, specular, very_complex
-from mission.bench.walls.building import Building, build, occluder_x, state
-from mission.bench.walls.hidden import Hidden, hidden_shares, scanner_origins
-from mission.bench.walls.plans import DoorPlan, RoomPlan
+from mission.bench.walls.building import Building, build
+from mission.bench.walls.fitting import fit_occluders
+from mission.bench.walls.hidden import scanner_origins
+from mission.bench.walls.plans import RoomPlan
 
 _PLANS: Mapping[str, Callable[[np.random.Generator], tuple[RoomPlan, ...]]] = MappingProxyType(
     {
@@ -24,10 +24,6 @@ _PLANS: Mapping[str, Callable[[np.random.Generator], tuple[RoomPlan, ...]]] = Ma
     }
 )
 CATEGORIES: tuple[str, ...] = tuple(_PLANS)
-MOST_HIDDEN = Hidden(panel=0.40, frame=0.50)
-"""By section 7.4 of the paper."""
-_COVERED = np.linspace(0.1, 1.0, 19)
-"""How much of a door's width an occluder may be tried to cover."""
 
 
 @dataclass(frozen=True)
@@ -102,8 +98,9 @@ def rooms(seed: int, categories: Collection[str] | None = None) -> list[BenchRoo
 def _room(plan: RoomPlan, name: str, rng: np.random.Generator) -> BenchRoom:
     building = build(plan, rng)
     places = _scan_places(building)
-    hidden = _fit_occluders(building, scanner_origins(places))
-    walls = []
+    hidden = fit_occluders(building, scanner_origins(places))
+    building.kit.spec.compile()  # with the occluders where they now are
+    walls: list[BenchWall] = []
     for number, wall in enumerate(plan.walls):
         if not wall.is_judged:
             continue
@@ -122,45 +119,4 @@ def _scan_places(building: Building) -> tuple[tuple[float, float, float], ...]:
     spots = building.to_world(places[:, :2])
     return tuple(
         (float(x), float(y), float(yaw + building.turn)) for (x, y), yaw in zip(spots, places[:, 2], strict=True)
-    )
-
-
-def _fit_occluders(building: Building, origins: np.ndarray) -> dict[tuple[int, int], Hidden]:
-    """Slides each occluder along its wall until it hides about as much as it should and no more than the paper's."""
-    model, data = state(building)
-    for (number, index), body in building.occluders.items():
-        wall = building.plan.walls[number]
-        occluder = wall.occluders[index]
-        shares = {}
-        for covered in _COVERED:
-            x = occluder_x(wall, occluder, float(covered))
-            model.body(body.name).pos[0] = x
-            mujoco.mj_forward(model, data)
-            hidden = _hidden(building, model, data, (number, occluder.door), origins)
-            if hidden.panel <= MOST_HIDDEN.panel and hidden.frame <= MOST_HIDDEN.frame:
-                shares[x] = abs(hidden.panel - occluder.share)
-        x = min(shares, key=lambda x: shares[x])
-        model.body(body.name).pos[0] = x
-        body.pos = [x, *body.pos[1:]]
-    model, data = state(building)
-    return {key: _hidden(building, model, data, key, origins) for key in building.leaves}
-
-
-def _hidden(
-    building: Building, model: mujoco.MjModel, data: mujoco.MjData, key: tuple[int, int], origins: np.ndarray
-) -> Hidden:
-    number, index = key
-    wall = model.body(f"wall {number + 1}").id
-    corners = _face(building.plan.walls[number].doors[index]) @ data.xmat[wall].reshape(3, 3).T + data.xpos[wall]
-    shell = {model.body("building").id, *(model.body(f"wall {k + 1}").id for k in range(len(building.plan.walls)))}
-    leaves = {model.body(name).id for names in building.leaves.values() for name in names}
-    return hidden_shares(model, data, corners, origins, frozenset(shell | leaves))
-
-
-def _face(door: DoorPlan) -> np.ndarray:
-    """(4, 3) corners of the closed leaves' face in the wall's frame: bottom left, bottom right, top right, top left."""
-    depth = min(door.recess, 0.0)
-    low, high = door.bottom, door.height
-    return np.array(
-        [[door.left, depth, low], [door.right, depth, low], [door.right, depth, high], [door.left, depth, high]]
     )

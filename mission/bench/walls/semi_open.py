@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
 from mission.bench.walls.interiors import Maker, Site, judged_wall, lay_out, random_door, room
 from mission.bench.walls.plans import NO_FRAME, DoorPlan, RoomPlan, Side, WallPlan
+
+DoorMaker = Callable[[np.random.Generator, Site], DoorPlan]
 
 _OPEN = np.pi / 2
 
@@ -25,9 +28,9 @@ def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:
     return (room(rng, "semi-open", [_wall(outward), *map(_wall, inward), _wall([_sliding])]),)
 
 
-def _wall(kinds: Sequence[object]) -> Maker:
+def _wall(kinds: Sequence[DoorMaker]) -> Maker:
     def make(rng: np.random.Generator, site: Site) -> WallPlan:
-        doors = [kind(rng, site) for kind in kinds]  # type: ignore[operator]
+        doors = [kind(rng, site) for kind in kinds]
         margin = 0.9 if any(door.slides or door.opens == "inward" for door in doors) else 0.5
         placed = lay_out(rng, doors, site.length, margin=margin)
         wall = replace(judged_wall(rng, site, placed, busy=0.4), stood=())
@@ -38,7 +41,7 @@ def _wall(kinds: Sequence[object]) -> Maker:
     return make
 
 
-def _hinged(hinge: Side, opens: str, angle: float):  # type: ignore[no-untyped-def]
+def _hinged(hinge: Side, opens: Literal["inward", "outward"], angle: float) -> DoorMaker:
     def door(rng: np.random.Generator, site: Site) -> DoorPlan:
         plain = random_door(rng, site.paint)
         return replace(

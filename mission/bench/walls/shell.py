@@ -48,7 +48,7 @@ def build_shell(kit: Kit, body: Body, wall: WallPlan, size: tuple[float, float],
 def build_beyond(kit: Kit, body: Body, wall: WallPlan, size: tuple[float, float], rng: np.random.Generator) -> None:
     """Adds what is seen through the wall's openings: a corridor, another room or a yard, with a few things in it."""
     length, height = size
-    near = wall.thickness
+    near = wall.thickness - 0.02
     depth = {"corridor": rng.uniform(1.6, 2.2), "room": rng.uniform(2.8, 3.8), "yard": 6.0}[wall.behind]
     far = near + depth
     top = height if wall.behind == "yard" else float(rng.uniform(2.45, 2.8))

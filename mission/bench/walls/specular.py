@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from mission.bench.walls import finishes
-from mission.bench.walls.finishes import WALL_PAINTS, Finish
+from mission.bench.walls.finishes import WALL_PAINTS
 from mission.bench.walls.interiors import Maker, Site, judged_wall, lay_out, random_door, room
 from mission.bench.walls.plans import DoorPlan, RoomPlan, WallPlan
 
 
 def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:
     """4 doors in 3 walls of a room; the flash lights up where wall and door meet."""
-    paint = _glossy(finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS), 0.03), rng)
+    paint = finishes.glossy(rng, finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS), 0.03))
     return (room(rng, "specular", [_wall(2), _wall(1), _wall(1, double=bool(rng.random() < 0.5))], paint),)
 
 
@@ -34,10 +34,5 @@ def _way_to_edge(doors: tuple[DoorPlan, ...], feet: tuple[float, ...]) -> float:
 
 
 def _lacquered(door: DoorPlan, rng: np.random.Generator) -> DoorPlan:
-    frame = replace(door.frame, finish=_glossy(door.frame.finish, rng))
-    return replace(door, finish=_glossy(door.finish, rng), frame=frame, panel="flat")
-
-
-def _glossy(finish: Finish, rng: np.random.Generator) -> Finish:
-    """Gloss paint or lacquer: lobes of 1 to 8 degrees."""
-    return replace(finish, specular=float(rng.uniform(0.2, 0.5)), roughness=float(rng.uniform(0.16, 0.28)))
+    frame = replace(door.frame, finish=finishes.glossy(rng, door.frame.finish))
+    return replace(door, finish=finishes.glossy(rng, door.finish), frame=frame, panel="flat")

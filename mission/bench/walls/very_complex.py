@@ -27,10 +27,10 @@ def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:
     return first, second
 
 
-def flush(rng: np.random.Generator, wall: Finish, *, factor: float = 1.0, double: bool = False) -> DoorPlan:
-    """A frameless door in the wall's plane whose colour differs by the paper's least, or some times that."""
+def flush(rng: np.random.Generator, wall: Finish, *, more: float = 0.0, double: bool = False) -> DoorPlan:
+    """A frameless door in the wall's plane; its colour differs by the paper's least, and by so much more in all."""
     sign = -1.0 if wall.colour[0] > 0.5 else 1.0
-    r, g, b = (sign * factor * part for part in LEAST_DIFFERENCE)
+    r, g, b = (sign * (part + more) for part in LEAST_DIFFERENCE)
     finish = finishes.shifted(wall, (r, g, b))
     door = random_door(rng, wall, double=double)
     return replace(door, finish=finish, frame=NO_FRAME, recess=0.0, panel="flat", opens="inward")
@@ -38,7 +38,7 @@ def flush(rng: np.random.Generator, wall: Finish, *, factor: float = 1.0, double
 
 def _coplanar(count: int) -> Maker:
     def make(rng: np.random.Generator, site: Site) -> WallPlan:
-        doors = [flush(rng, site.paint, factor=float(rng.uniform(1.0, 2.0))) for _ in range(count)]
+        doors = [flush(rng, site.paint, more=more * float(rng.random())) for more in (0.0, 0.05)[:count]]
         return judged_wall(rng, site, lay_out(rng, doors, site.length), window=True, busy=0.4)
 
     return make
@@ -49,7 +49,7 @@ def _stained(rng: np.random.Generator, site: Site) -> WallPlan:
     colour = finishes.jittered(rng, (0.72, 0.68, 0.58), 0.06)
     finish = Finish(colour, textures.mottled, WALL_VARIATION, (site.length, site.height), finishes.seed(rng))
     even = finishes.plaster(rng, colour)
-    door = replace(flush(rng, even, factor=2.0), recess=float(rng.uniform(0.0, 0.012)))
+    door = replace(flush(rng, even, more=0.02), recess=float(rng.uniform(0.0, 0.012)))
     return judged_wall(rng, site, lay_out(rng, [door], site.length), finish=finish, busy=0.3)
 
 
@@ -58,10 +58,8 @@ def _tiled(rng: np.random.Generator, site: Site) -> WallPlan:
     colour = finishes.pick(rng, WALL_PAINTS)
     period = 4 * float(rng.uniform(0.15, 0.3))
     variation = float(rng.uniform(0.06, 0.12))
-    finish = Finish(
-        colour, textures.tiles, variation, (period, period), finishes.seed(rng), specular=0.08, roughness=0.5
-    )
-    door = flush(rng, finishes.plaster(rng, colour, 0.02), factor=float(rng.uniform(1.5, 3.0)))
+    finish = finishes.glossy(rng, Finish(colour, textures.tiles, variation, (period, period), finishes.seed(rng)))
+    door = flush(rng, finishes.plaster(rng, colour, 0.02), more=float(rng.uniform(0.0, 0.08)))
     return judged_wall(rng, site, lay_out(rng, [door], site.length), finish=finish, busy=0.3)
 
 
@@ -71,10 +69,11 @@ def _glazed(count: int) -> Maker:
     def make(rng: np.random.Generator, site: Site) -> WallPlan:
         doors = []
         for _ in range(count):
-            door = flush(rng, site.paint, factor=float(rng.uniform(1.5, 3.0)))
-            panel = "glazed" if rng.random() < 0.6 else "vision"
-            glass = GLASS if rng.random() < 0.5 else FROSTED
-            doors.append(replace(door, panel=panel, glass=glass, recess=float(rng.uniform(0.0, 0.01))))
+            door = flush(rng, site.paint, more=float(rng.uniform(0.02, 0.1)))
+            door = replace(
+                door, panel="glazed" if rng.random() < 0.6 else "vision", recess=float(rng.uniform(0.0, 0.01))
+            )
+            doors.append(replace(door, glass=GLASS if rng.random() < 0.5 else FROSTED))
         return judged_wall(rng, site, lay_out(rng, doors, site.length), busy=0.8)
 
     return make
@@ -84,14 +83,14 @@ def _panelled(rng: np.random.Generator, site: Site) -> WallPlan:
     """Wooden panelling with a double door of the same boards."""
     colour = finishes.pick(rng, WOODS)
     pitch = 6 * float(rng.uniform(0.16, 0.3))
-    finish = Finish(colour, textures.boards, 0.12, (pitch, 2.6), finishes.seed(rng), specular=0.06, roughness=0.6)
-    door = flush(rng, finish, factor=float(rng.uniform(1.0, 1.6)), double=True)
+    finish = Finish(colour, textures.boards, 0.12, (pitch, 2.6), finishes.seed(rng))
+    door = flush(rng, finish, more=float(rng.uniform(0.0, 0.02)), double=True)
     return replace(judged_wall(rng, site, lay_out(rng, [door], site.length), finish=finish, busy=0.15), skirting=None)
 
 
 def _baited(rng: np.random.Generator, site: Site) -> WallPlan:
     """Cupboards in the wall's colour beside a door that hardly differs from it."""
-    door = flush(rng, site.paint, factor=float(rng.uniform(1.0, 2.0)))
+    door = flush(rng, site.paint, more=float(rng.uniform(0.0, 0.04)))
     placed = lay_out(rng, [door], site.length, margin=0.5)
     wall = judged_wall(rng, site, placed, busy=0.0)
     cupboards = _cupboards(rng, site, placed)
