@@ -46,7 +46,7 @@ class Finish:
     """Width and height after which the picture repeats [m]."""
     seed: int = 0
     """Of the picture."""
-    specular: float = 0.04
+    specular: float = 0.015
     """Height of the gloss lobe, relative to a white diffuser."""
     roughness: float = 0.8
     """Width of the gloss lobe: 0 a mirror, 1 matt."""
@@ -57,14 +57,14 @@ class Finish:
 STEEL = Finish((0.62, 0.63, 0.65), specular=0.3, roughness=0.4)
 BRASS = Finish((0.70, 0.58, 0.32), specular=0.3, roughness=0.4)
 BLACK = Finish((0.12, 0.12, 0.13))
-WHITE = Finish((0.93, 0.93, 0.92), specular=0.04)
+WHITE = Finish((0.93, 0.93, 0.92))
 GLASS = Finish((0.75, 0.88, 0.90), alpha=0.2)
-FROSTED = Finish((0.80, 0.86, 0.87), specular=0.04)
+FROSTED = Finish((0.80, 0.86, 0.87))
 RED = Finish((0.75, 0.10, 0.08), specular=0.2, roughness=0.3)
 GREEN = Finish((0.10, 0.50, 0.28))
 
 
-def plain(colour: Colour, *, specular: float = 0.04, roughness: float = 0.8) -> Finish:
+def plain(colour: Colour, *, specular: float = 0.015, roughness: float = 0.8) -> Finish:
     """One colour."""
     return Finish(colour, specular=specular, roughness=roughness)
 
@@ -76,7 +76,7 @@ def plaster(rng: np.random.Generator, colour: Colour, variation: float = 0.055) 
 
 def wood(rng: np.random.Generator, colour: Colour, variation: float = 0.12) -> Finish:
     """Veneer with upright grain."""
-    return Finish(colour, textures.grain, variation, (0.9, 2.1), seed(rng), specular=0.04)
+    return Finish(colour, textures.grain, variation, (0.9, 2.1), seed(rng))
 
 
 def glossy(rng: np.random.Generator, finish: Finish) -> Finish:

@@ -129,7 +129,7 @@ def slab_quads(
     lower: Point, upper: Point, holes: Sequence[Hole], period: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The surface of a box with holes through it along y: quadrangles (Q, 4, 3) anticlockwise seen from outside [m],
-    and their texture coordinates (Q, 4, 2), which grow by 1 a period of x and of z."""
+    and their texture coordinates (Q, 4, 2), which grow by 1 a period to the right and down."""
     xs = _cuts(lower[0], upper[0], [x for hole in holes for x in (hole.left, hole.right)])
     zs = _cuts(lower[2], upper[2], [z for hole in holes for z in (hole.bottom, hole.top)])
     solid = np.zeros((len(xs) + 1, len(zs) + 1), bool)  # with a rim of nothing
@@ -153,10 +153,10 @@ def slab_quads(
         if not solid[i, k + 1]:
             quads.append([(x0, near, z1), (x1, near, z1), (x1, far, z1), (x0, far, z1)])
     vertices = np.array(quads)
-    # the picture starts in the lower left corner and bends round the edges
+    # the picture starts in the upper left corner, its first row on top, and bends round the edges
     level = np.ptp(vertices[..., 2], axis=1) == 0
     u = vertices[..., 0] - lower[0] + np.where(level, 0, 1)[:, None] * (vertices[..., 1] - near)
-    v = vertices[..., 2] - lower[2] + np.where(level, 1, 0)[:, None] * (vertices[..., 1] - near)
+    v = upper[2] - vertices[..., 2] + np.where(level, 1, 0)[:, None] * (vertices[..., 1] - near)
     return vertices, np.stack([u / period[0], v / period[1]], axis=-1)
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from mission.bench.walls import finishes, textures
 from mission.bench.walls.finishes import FROSTED, GLASS, WALL_PAINTS, WOODS, Finish
 from mission.bench.walls.fixtures import Cupboard
-from mission.bench.walls.furniture import wood_colour
 from mission.bench.walls.interiors import Maker, Site, judged_wall, lay_out, random_door, room
 from mission.bench.walls.plans import NO_FRAME, DoorPlan, Hung, RoomPlan, Stood, WallPlan, free_spans
 
@@ -111,6 +110,5 @@ def _cupboards(rng: np.random.Generator, site: Site, doors: Sequence[DoorPlan]) 
         if width < 0.5:
             continue
         x = float(rng.uniform(low + 0.35 + width / 2, high - 0.35 - width / 2))
-        like = site.paint if rng.random() < 0.8 else wood_colour(rng)
-        found.append(Stood(x, 0.0, Cupboard(width, float(rng.uniform(1.75, 2.0)), depth, like, plinth=0.08)))
+        found.append(Stood(x, 0.0, Cupboard(width, float(rng.uniform(1.75, 2.0)), depth, site.paint, plinth=0.08)))
     return found
