@@ -80,8 +80,9 @@ def wood(rng: np.random.Generator, colour: Colour, variation: float = 0.12) -> F
 
 
 def glossy(rng: np.random.Generator, finish: Finish) -> Finish:
-    """Gloss paint, lacquer or glaze: the flash comes back within 2 to 5 degrees, on some 8 cm2 to 0.27 m2 of a wall."""
-    return replace(finish, specular=float(rng.uniform(0.15, 0.4)), roughness=float(rng.uniform(0.13, 0.22)))
+    """Gloss paint, lacquer or glaze: highlights of the flash cover some 8 cm2 to 0.27 m2 of a wall (section 7.4)."""
+    spread = float(rng.uniform(0.14**4, 0.30**4))  # the area of a highlight grows like roughness^4
+    return replace(finish, specular=float(rng.uniform(0.2, 0.45)), roughness=spread**0.25)
 
 
 def floor(rng: np.random.Generator) -> Finish:
