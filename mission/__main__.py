@@ -17,16 +17,29 @@ then:
   rerun runs/room-1/mission.rrd
 """
 
+BENCH_EXAMPLES = """\
+examples:
+  python -m mission bench walls
+  python -m mission bench walls --seed 0 1 2 3 4
+  python -m mission bench walls --category specular --ablate highlights
+  python -m mission bench walls --sweep alpha1 --jobs 8
+  python -m mission bench walls --set scanner.pattern=draft --set detector.alpha3=0.04
+"""
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a command line and return its exit status."""
     options = parser().parse_args(arguments)
     try:
+        if options.command == "bench":
+            from mission.bench.walls.command import bench_walls
+
+            return bench_walls(options)
         from mission.run import run  # imports mujoco, rerun and the rest: not needed for --help
 
         return run(options)
     except KeyboardInterrupt:
-        print("interrupted before the mission began", file=sys.stderr)
+        print(f"interrupted before the {options.command} began", file=sys.stderr)
         return 130
 
 
@@ -47,7 +60,7 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    kinds = commands.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    kinds = commands.add_subparsers(title="commands", dest="command", required=True, metavar="COMMAND")
     run = kinds.add_parser(
         "run",
         help="run a mission in a scene",
@@ -91,7 +104,55 @@ def parser() -> argparse.ArgumentParser:
     how = run.add_mutually_exclusive_group()
     how.add_argument("--quiet", action="store_true", help="say nothing but errors")
     how.add_argument("--json", action="store_true", help="print doors and summary as one JSON object, nothing else")
+    bench = kinds.add_parser("bench", help="measure how good the parts are", allow_abbrev=False)
+    _add_walls(bench.add_subparsers(title="benchmarks", dest="bench", required=True, metavar="NAME"))
     return commands
+
+
+def _add_walls(benches: argparse._SubParsersAction[OneLineParser]) -> None:
+    walls = benches.add_parser(
+        "walls",
+        help="the detector on 27 generated walls with 35 doors",
+        description="Scan generated walls in the paper's five categories, detect their doors, compare them with the "
+        "truth, and print the paper's Tables 4 to 6 with its numbers beside ours.",
+        epilog=BENCH_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    walls.add_argument(
+        "--seed", type=_seed, nargs="+", default=[0], metavar="N", help="of the rooms and of all noise (default: 0)"
+    )
+    walls.add_argument(
+        "--category",
+        action="append",
+        metavar="NAME",
+        help="simple, occlusion, specular, semi-open or 'very complex'; may be repeated (default: all)",
+    )
+    walls.add_argument("--out", metavar="DIR", help="folder for the results (default: runs/bench-walls-<n>)")
+    what = walls.add_mutually_exclusive_group()
+    what.add_argument(
+        "--ablate",
+        choices=("highlights", "flash"),
+        help="compare with a run that leaves a stage out; highlights is Table 5, of the specular category by default",
+    )
+    what.add_argument(
+        "--sweep",
+        choices=("delta", "alpha1", "alpha2", "alpha3", "sigma"),
+        help="nine values of a parameter of the detector: Table 6",
+    )
+    walls.add_argument("--jobs", type=_positive, metavar="N", help="rooms at a time, 2 GB each (default: one a core)")
+    walls.add_argument(
+        "--backend",
+        choices=("loky", "dask", "ray"),
+        default="loky",
+        help="what runs them: processes here (loky, the default), or the Dask or Ray cluster that "
+        "DASK_SCHEDULER_ADDRESS or RAY_ADDRESS names",
+    )
+    walls.add_argument("--cache", metavar="DIR", help="folder of scanned rooms (default: ~/.cache/door-mission)")
+    walls.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
+    walls.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="one parameter, as for run; may be repeated"
+    )
 
 
 def _seed(text: str) -> int:

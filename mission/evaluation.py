@@ -137,7 +137,7 @@ def _evaluation(door_id: str, number: int, wall: Wall, *, door: Door, truth: Doo
     r = door.rectangle
     n = len(door.leaves)
     leaves = tuple(_leaf_corners(wall, r, leaf, number=i, count=n) for i, leaf in enumerate(door.leaves))
-    rectangle = _rectangle_on(wall, truth) if truth else None
+    rectangle = doorway_on(wall, truth) if truth else None
     angles = [leaf.opening_angle for leaf in truth.leaves if not np.isnan(leaf.opening_angle)] if truth else []
     return DoorEvaluation(
         door_id=door_id,
@@ -154,7 +154,7 @@ def _evaluation(door_id: str, number: int, wall: Wall, *, door: Door, truth: Doo
     )
 
 
-def _rectangle_on(wall: Wall, truth: DoorTruth) -> Rectangle | None:
+def doorway_on(wall: Wall, truth: DoorTruth) -> Rectangle | None:
     """The true doorway in wall coordinates, or None if it is not in this wall."""
     if abs(float(np.dot(truth.normal, wall.normal))) < SAME_DIRECTION:
         return None
@@ -168,7 +168,7 @@ def _rectangle_on(wall: Wall, truth: DoorTruth) -> Rectangle | None:
 
 def _shared(wall: Wall, door: Door, truth: DoorTruth) -> float:
     """Intersection over union of a detected and a true doorway."""
-    rectangle = _rectangle_on(wall, truth)
+    rectangle = doorway_on(wall, truth)
     if rectangle is None:
         return 0.0
     return overlap(door.rectangle, rectangle).iou

@@ -167,8 +167,13 @@ def find_scene(scene: str) -> Path:
     raise UsageError(f"no such scene: {scene!r} ({hint})")
 
 
-def make_folder(out: str | None, *, scene_name: str) -> Path:
+def make_folder(out: str | None, *, scene_name: str, first_file: str = "mission.rrd") -> Path:
     """Make the folder for the results.
+
+    Args:
+        out: As the user has it; None for runs/<scene>-<n>.
+        scene_name: Names it where the user does not.
+        first_file: That is written into it.
 
     Raises:
         UsageError: It cannot be made or written.
@@ -180,7 +185,7 @@ def make_folder(out: str | None, *, scene_name: str) -> Path:
             raise UsageError("--out: the name of the folder is empty")
         folder = Path(out)
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "mission.rrd").open("ab").close()  # can it be written?
+        (folder / first_file).open("ab").close()  # can it be written?
     except OSError as error:
         raise UsageError(f"cannot write the results: {error.strerror}: {error.filename}") from error
     return folder

@@ -51,6 +51,8 @@ class Rays:
         ignored = ghosts | np.isin(model.geom_bodyid, sorted(ignored_bodies))
         self._model = copy.copy(model)  # whose groups say what to ignore; the caller's model stays as it is
         self._model.geom_group[:] = np.where(ignored, _IGNORED_GROUP, np.minimum(model.geom_group, _IGNORED_GROUP - 1))
+        # a body's bounding volume holds its colliding geoms only; mj_multiRay would miss the others
+        self._model.body_bvhadr[:] = -1
 
     def cast(self, origin: np.ndarray, directions: np.ndarray, cutoff: float = 1e3) -> Hits:
         """Cast rays from one point.

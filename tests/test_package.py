@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+MUJOCO = {"mujoco"}
+"""What benchmarks may import beside the simulator: they generate scenes and judge by their truth."""
 
 
 def imports(path: Path) -> Iterator[str]:
@@ -44,6 +46,7 @@ def test_the_arrows_point_one_way(folder: str, banned: set[str]) -> None:
     files = sorted((ROOT / folder).rglob("*.py"))
     assert files
     crossed = {str(path.relative_to(ROOT)): hits for path in files if (hits := banned & set(imports(path)))}
+    crossed = {path: hits for path, hits in crossed.items() if not path.startswith("mission/bench/") or hits != MUJOCO}
     assert crossed == {}
 
 

@@ -1,0 +1,1 @@
+"""Benchmarks: the numbers that the mission, the detector and the recordings are held to."""
