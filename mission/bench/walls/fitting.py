@@ -12,11 +12,12 @@ from mission.bench.walls.building import Building
 from mission.bench.walls.floor_plans import side_lengths
 from mission.bench.walls.hidden import Hidden, hidden_shares
 from mission.bench.walls.plans import DoorPlan, Occluder, WallPlan
+from sim.rays import Rays
 
 MOST_HIDDEN = Hidden(panel=0.40, frame=0.50)
 """By section 7.4 of the paper."""
 
-_TRIES = 12
+_TRIES = 10
 """Places on each side of a door that are tried for an occluder."""
 _CORNER = 0.9
 """Kept free at the right end of a wall, so that things do not meet round the corner [m]."""
@@ -34,6 +35,8 @@ def fit_occluders(building: Building, origins: NDArray[np.float64]) -> Mapping[t
     """
     model = building.kit.spec.compile()
     data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    rays = Rays(model, data, _passed(building, model))
     lengths = side_lengths(building.plan.corners)
     for (number, index), body in building.occluders.items():
         wall = building.plan.walls[number]
@@ -42,7 +45,7 @@ def fit_occluders(building: Building, origins: NDArray[np.float64]) -> Mapping[t
         for x in places_for(wall, occluder, float(lengths[number])):
             model.body(body.name).pos[0] = x
             mujoco.mj_kinematics(model, data)
-            hidden = _hidden(building, model, data, (number, occluder.door), origins)
+            hidden = hidden_shares(rays, _face(data, number, wall.doors[occluder.door]), origins)
             if hidden.panel <= MOST_HIDDEN.panel and hidden.frame <= MOST_HIDDEN.frame:
                 errors[x] = abs(hidden.panel - occluder.share)
         if not errors:
@@ -51,7 +54,8 @@ def fit_occluders(building: Building, origins: NDArray[np.float64]) -> Mapping[t
         model.body(body.name).pos[0] = x
         body.pos = [x, *body.pos[1:]]
     mujoco.mj_kinematics(model, data)
-    return {key: _hidden(building, model, data, key, origins) for key in building.leaves}
+    doors = {(number, index): building.plan.walls[number].doors[index] for number, index in building.leaves}
+    return {key: hidden_shares(rays, _face(data, key[0], door), origins) for key, door in doors.items()}
 
 
 def places_for(wall: WallPlan, occluder: Occluder, length: float) -> list[float]:
@@ -67,25 +71,19 @@ def places_for(wall: WallPlan, occluder: Occluder, length: float) -> list[float]
     return found
 
 
-def _hidden(
-    building: Building,
-    model: mujoco.MjModel,
-    data: mujoco.MjData,
-    key: tuple[int, int],
-    origins: NDArray[np.float64],
-) -> Hidden:
-    number, index = key
-    walls = [model.body(f"wall {k + 1}").id for k in range(len(building.plan.walls))]
-    corners = _face(building.plan.walls[number].doors[index]) @ data.xmat[walls[number]].reshape(3, 3).T
-    leaves = (model.body(name).id for names in building.leaves.values() for name in names)
-    passed = frozenset((model.body("building").id, *walls, *leaves))
-    return hidden_shares(model, data, corners + data.xpos[walls[number]], origins, passed)
+def _passed(building: Building, model: mujoco.MjModel) -> frozenset[int]:
+    """Bodies that are no furniture."""
+    walls = (f"wall {number + 1}" for number in range(len(building.plan.walls)))
+    leaves = (name for names in building.leaves.values() for name in names)
+    return frozenset(model.body(name).id for name in ("building", *walls, *leaves))
 
 
-def _face(door: DoorPlan) -> NDArray[np.float64]:
-    """(4, 3) corners of the closed leaves' face in the wall's frame: bottom left, bottom right, top right, top left."""
+def _face(data: mujoco.MjData, number: int, door: DoorPlan) -> NDArray[np.float64]:
+    """(4, 3) corners of a closed door's face in world, seen from inside: bottom left, bottom right, top right, left."""
     depth = min(door.recess, 0.0)
     low, high = door.bottom, door.height
-    return np.array(
+    corners = np.array(
         [[door.left, depth, low], [door.right, depth, low], [door.right, depth, high], [door.left, depth, high]]
     )
+    wall = data.body(f"wall {number + 1}")
+    return np.asarray(corners @ wall.xmat.reshape(3, 3).T + wall.xpos)

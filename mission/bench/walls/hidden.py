@@ -47,23 +47,14 @@ def scanner_origins(scan_places: tuple[tuple[float, float, float], ...]) -> NDAr
     )
 
 
-def hidden_shares(
-    model: mujoco.MjModel,
-    data: mujoco.MjData,
-    corners: NDArray[np.float64],
-    origins: NDArray[np.float64],
-    passed: frozenset[int],
-) -> Hidden:
+def hidden_shares(rays: Rays, corners: NDArray[np.float64], origins: NDArray[np.float64]) -> Hidden:
     """Casts rays at a door.
 
     Args:
-        model: the room.
-        data: its state.
+        rays: against the room, past what hides nothing: walls, and the doors themselves.
         corners: (4, 3) of the closed panel's face in world: bottom left, bottom right, top right, top left [m].
         origins: (K, 3) from where [m].
-        passed: bodies that hide nothing: walls, and the doors themselves.
     """
-    rays = Rays(model, data, passed)
     right, up = corners[1] - corners[0], corners[3] - corners[0]
     width, height = np.linalg.norm(right), np.linalg.norm(up)
     x, z = (np.arange(_COLUMNS) + 0.5) / _COLUMNS, (np.arange(_ROWS) + 0.5) / _ROWS

@@ -119,10 +119,14 @@ class Kit:
         if finish.painter:
             picture = finish.painter(np.random.default_rng(finish.seed), finish.colour, finish.variation)
             file = f"{name.replace(' ', '_')}.png"
-            self.assets[file] = cv2.imencode(".png", picture[..., ::-1])[1].tobytes()  # RGB to BGR
+            self.assets[file] = _png(picture)
             self.spec.add_texture(name=name, type=mujoco.mjtTexture.mjTEXTURE_2D, file=file)
             material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = name
         return name
+
+
+def _png(picture: NDArray[np.uint8]) -> bytes:
+    return bytes(cv2.imencode(".png", picture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 1])[1])  # RGB to BGR
 
 
 def slab_quads(

@@ -15,14 +15,17 @@ from mission.bench.walls.plans import DoorPlan, Occluder, WallPlan
 from mission.bench.walls.rooms import BenchRoom, rooms
 from sim.camera import Camera
 from sim.doors import true_doors
+from sim.rays import Rays
 from sim.render import Renderer
 
 PANEL = np.array([[0.0, 0, 0], [1, 0, 0], [1, 0, 2], [0, 0, 2]])
 AHEAD = np.array([[0.5, -4.0, 1.0]])
 
 
-def board(x: tuple[float, float], z: tuple[float, float], y: float = -0.03) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """A thin upright board before the panel."""
+def board(
+    x: tuple[float, float], z: tuple[float, float], y: float = -0.03, passed: frozenset[int] = frozenset()
+) -> Rays:
+    """Rays past a thin upright board before the panel."""
     place = f"{sum(x) / 2} {y} {sum(z) / 2}"
     size = f"{(x[1] - x[0]) / 2} 0.001 {(z[1] - z[0]) / 2}"
     model = mujoco.MjModel.from_xml_string(
@@ -30,31 +33,31 @@ def board(x: tuple[float, float], z: tuple[float, float], y: float = -0.03) -> t
     )
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    return model, data
+    return Rays(model, data, passed)
 
 
 def test_a_board_over_the_left_half_hides_half_the_panel_and_the_left_side_of_the_frame() -> None:
-    hidden = hidden_shares(*board((-0.5, 0.5), (-1, 2.01)), PANEL, AHEAD, frozenset())
+    hidden = hidden_shares(board((-0.5, 0.5), (-1, 2.01)), PANEL, AHEAD)
     assert hidden.panel == pytest.approx(0.5, abs=0.04)
     assert hidden.frame == pytest.approx(2 / 5, abs=0.04)  # of 2 m left, 2 m right and 1 m above
 
 
 def test_a_board_up_to_half_height_hides_half_the_panel_and_both_sides_up_to_it() -> None:
-    hidden = hidden_shares(*board((-0.5, 1.5), (-1, 1.0)), PANEL, AHEAD, frozenset())
+    hidden = hidden_shares(board((-0.5, 1.5), (-1, 1.0)), PANEL, AHEAD)
     assert hidden.panel == pytest.approx(0.5, abs=0.04)
     assert hidden.frame == pytest.approx(2 / 5, abs=0.04)
 
 
 def test_what_one_scan_place_sees_is_not_hidden() -> None:
     # 1 m before the panel a board of 0.3 m throws shadows of 0.4 m; seen from 2 m left and right they are 1.3 m apart
-    scene = board((0.35, 0.65), (-1, 2.5), y=-1.0)
+    rays = board((0.35, 0.65), (-1, 2.5), y=-1.0)
     apart = np.array([[-1.5, -4.0, 1.0], [2.5, -4.0, 1.0]])
-    assert hidden_shares(*scene, PANEL, AHEAD, frozenset()).panel == pytest.approx(0.4, abs=0.04)  # one column
-    assert hidden_shares(*scene, PANEL, apart, frozenset()).panel == 0
+    assert hidden_shares(rays, PANEL, AHEAD).panel == pytest.approx(0.4, abs=0.04)  # one column
+    assert hidden_shares(rays, PANEL, apart).panel == 0
 
 
 def test_bodies_that_are_passed_hide_nothing() -> None:
-    assert hidden_shares(*board((-0.5, 1.5), (-1, 3)), PANEL, AHEAD, frozenset([1])).panel == 0
+    assert hidden_shares(board((-0.5, 1.5), (-1, 3), passed=frozenset([1])), PANEL, AHEAD).panel == 0
 
 
 def test_the_scanner_of_a_turned_robot_is_above_its_base_and_turned_with_it() -> None:
