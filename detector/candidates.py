@@ -17,6 +17,12 @@ from detector.result import Image, Mask, Orthoimage
 FOOT = 0.3
 """The sides of a door reach the floor; those of a panel in it do not: tested over this height [m]."""
 FOOT_SUPPORT = 0.4
+VISIBLE_SHARE = 0.4
+"""Share of a side over which it is visible that is enough to judge it."""
+LEAST_VISIBLE = 0.12
+"""Less of a side than this says nothing, however clear it is."""
+CLEAR_SHARE = 0.8
+"""Support that a side must have over its visible part where most of it is hidden."""
 STRIP = (0.01, 0.06)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
 FAINT_COLOUR = 0.008
@@ -43,6 +49,8 @@ class Scene:
     wall: Mask
     face: Mask
     """(H, W) where some view shows the wall's face, or what lies flat on it."""
+    visible: Mask
+    """(H, W) where nothing hides the wall's plane: data, or looked through."""
     floor_row: int
     """First row below the floor."""
     lowest_row: int
@@ -88,10 +96,9 @@ def door_boxes(
 def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> tuple[NDArray, NDArray]:
     """Condition 2: share of the left, top, right and bottom sides on a discontinuity, (N, 4); and of the feet, (N, 2).
 
-    Shares are of the visible length, of which there must be at least half; what furniture hides can neither support
-    nor refute. The bottom is the floor.
+    Shares are of the visible length; what furniture hides can neither support nor refute. Where most of a side is
+    hidden, the rest must be clear. The bottom is the floor.
     """
-    visible = (scene.seen == Visibility.DATA) | (scene.seen == Visibility.THROUGH)
     result = np.ones((len(boxes), 4))
     feet = np.ones((len(boxes), 2))
     foot = max(1, round(FOOT / scene.merged.pixel_size))
@@ -100,23 +107,30 @@ def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> 
     for axis, mask in ((1, scene.edges.upright), (0, scene.edges.level)):
         shape = np.ones((1, 3) if axis == 1 else (3, 1), np.uint8)
         hits = scene.sums(cv2.dilate(mask.astype(np.uint8), shape) > 0)
-        open_to_view = scene.sums(cv2.dilate(visible.astype(np.uint8), np.ones(shape.T.shape[::-1], np.uint8)) > 0)
+        open_to_view = scene.sums(cv2.dilate(scene.visible.astype(np.uint8), shape) > 0)
         if axis == 1:
             for i, column in ((0, left), (2, right)):
-                result[:, i] = _share(hits, open_to_view, np.stack([top, column, lowest, column + 1], axis=1), 0.4)
+                result[:, i] = _share(hits, open_to_view, np.stack([top, column, lowest, column + 1], axis=1))
                 ends = np.stack([lowest - foot, column, lowest, column + 1], axis=1)
-                feet[:, i // 2] = _share(hits, open_to_view, ends, 0.3, blind=1.0)
+                feet[:, i // 2] = _foot_share(hits, open_to_view, ends)
         else:
-            result[:, 1] = _share(hits, open_to_view, np.stack([top, left, top + 1, right + 1], axis=1), 0.4)
+            result[:, 1] = _share(hits, open_to_view, np.stack([top, left, top + 1, right + 1], axis=1))
     return result, feet
 
 
-def _share(hits: NDArray, visible: NDArray, boxes: NDArray, least_visible: float, blind: float = 0.0) -> NDArray:
-    """Hits per visible pixel of each box; `blind` where too little of it is visible."""
+def _share(hits: NDArray, visible: NDArray, boxes: NDArray) -> NDArray:
+    """Hits per visible pixel of each box, 0 where too little of it is visible."""
     seen = box_sums(visible, boxes)
-    return np.where(
-        seen >= least_visible * _area(boxes), np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0), blind
-    )
+    shares = np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0)
+    visible_share = seen / _area(boxes)
+    clear = (visible_share >= LEAST_VISIBLE) & (shares >= CLEAR_SHARE)
+    return np.where((visible_share >= VISIBLE_SHARE) | clear, shares, 0.0)
+
+
+def _foot_share(hits: NDArray, visible: NDArray, boxes: NDArray) -> NDArray:
+    """Hits per visible pixel of each box; 1 where too little of it is visible."""
+    seen = box_sums(visible, boxes)
+    return np.where(seen >= 0.3 * _area(boxes), np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0), 1.0)
 
 
 def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]:
@@ -132,7 +146,7 @@ def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]
     ).astype(np.int64)
     area = _area(box)
     through = scene.seen == Visibility.THROUGH
-    masks = (scene.wall, through | (scene.seen == Visibility.DATA), through)
+    masks = (scene.wall, scene.visible, through)
     wall, visible, passed = (box_sums(scene.sums(mask), box) / area for mask in masks)
     return wall, visible, passed
 
@@ -144,8 +158,8 @@ def surroundings(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
     strip is hidden or beyond the image: 1, but 0 where something that stands out into the room hides it from within.
     """
     plane = scene.sums(scene.face)
-    visible = scene.sums((scene.seen == Visibility.DATA) | (scene.seen == Visibility.THROUGH))
-    standing_out = scene.sums(np.nan_to_num(scene.merged.depth, nan=-np.inf) > scene.protrusion)
+    visible = scene.sums(scene.visible)
+    standing_out = scene.sums((np.nan_to_num(scene.merged.depth, nan=-np.inf) > scene.protrusion) & scene.visible)
     result = np.ones((len(boxes), 3))
     sides = zip(strips(boxes, scene, outside=True), strips(boxes, scene, outside=False), strict=True)
     for i, (outer, inner) in enumerate(sides):
@@ -210,7 +224,7 @@ def steps(box: Boxes, scene: Scene) -> Steps:
     colour, depth, wall = np.full((3, 3), np.nan), np.full(3, np.nan), np.ones(3)
     for i in range(3):
         cut = [np.s_[b[0, 0] : b[0, 2] : 2, b[0, 1] : b[0, 3] : 2] for b in (inner[i], outer[i])]
-        known = [scene.merged.coloured[c] & np.isfinite(scene.merged.depth[c]) for c in cut]
+        known = [scene.merged.coloured[c] & scene.visible[c] & np.isfinite(scene.merged.depth[c]) for c in cut]
         if any(k.sum() < 0.1 * max(k.size, 1) for k in known):
             continue
         colours = [np.median(scene.merged.colour[c][k], axis=0) / 255 for c, k in zip(cut, known, strict=True)]
@@ -257,8 +271,9 @@ def dominance(box: Boxes, scene: Scene) -> Dominance:
         int(np.ceil(box.top[0] + 0.5)) : scene.lowest_row : SAMPLED_PX,
         int(np.ceil(box.left[0] + 0.5)) : int(np.floor(box.right[0] + 0.5)) : SAMPLED_PX,
     ]
-    seen, depth = scene.seen[cut], scene.merged.depth[cut]
-    data = seen == Visibility.DATA
+    seen = scene.seen[cut]
+    data = (seen == Visibility.DATA) & scene.visible[cut]
+    depth = np.where(data, scene.merged.depth[cut], np.float32(np.nan))
     through = float((seen == Visibility.THROUGH).sum())
     total = max(data.sum() + through, 1.0)
     if data.sum() < 10:

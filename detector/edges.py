@@ -46,6 +46,8 @@ class Edges:
     """Those of J'_CD that can lie on a vertical side."""
     level: Mask
     """Those that can lie on a horizontal side."""
+    sloping: Mask
+    """Where the surface turns away from the wall's plane, as a leaf that stands open does."""
 
 
 def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) -> Edges:
@@ -61,7 +63,7 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
     relief = depth_edges(merged.depth, seen, merged.pixel_size, parameters)
     upright = (colour & across) | (relief.edges & relief.across)
     level = (colour & ~across) | (relief.edges & ~relief.across)
-    return Edges(colour, relief.edges, upright, level)
+    return Edges(colour, relief.edges, upright, level, relief.sloping)
 
 
 def colour_derivatives(merged: Orthoimage) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -126,6 +128,8 @@ class Relief:
     """J'_D."""
     across: Mask
     """True where the depth changes along the columns rather than down the rows."""
+    sloping: Mask
+    """True where the depth changes steadily along the columns."""
 
 
 def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, parameters: DetectorParameters) -> Relief:
@@ -138,7 +142,7 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
     known = np.where(through, np.float32(-parameters.slab_behind), depth)
     filled = nearest(known, data | through)
     if not (data | through).any():
-        return Relief(*(np.zeros_like(data) for _ in range(2)))
+        return Relief(*(np.zeros_like(data) for _ in range(3)))
     dx, dy = _derivatives(filled, _odd(ALONG, pixel_size))
     slope = _local_slope(dx[:: _slope_rows(pixel_size)], pixel_size, len(dx))
     # the face of a half-open leaf slopes, and has no edges; its noise grows with the slope times the sample spacing
@@ -148,10 +152,11 @@ def depth_edges(depth: NDArray[np.float32], seen: Image, pixel_size: float, para
     high = parameters.depth_edge / 2 * scale  # a central difference sees half a step
     whole_x, whole_y = (np.clip(np.rint(d * scale), -32000, 32000).astype(np.int16) for d in (dx, dy))
     steps = np.asarray(cv2.Canny(whole_x, whole_y, high / 2, high, L2gradient=True)) > 0
-    creases = _creases(np.abs(slope) > _flatness(slope, data, pixel_size))
+    sloping = np.abs(slope) > _flatness(slope, data, pixel_size)
+    creases = _creases(sloping)
     near_data = cv2.dilate(data.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
     across = np.where(steps, np.abs(dx) >= np.abs(dy), creases)
-    return Relief((steps | creases) & near_data, across)
+    return Relief((steps | creases) & near_data, across, sloping)
 
 
 def wall_face(view: Orthoimage, parameters: DetectorParameters) -> Mask:

@@ -12,6 +12,10 @@ TOLERANCE_PX = 1
 """A line may wander this far to either side."""
 SEPARATION_PX = 3
 """Lines closer than this are one."""
+LEAST_VISIBLE = 0.12
+"""Least share of its window over which a line must be visible: 0.2 m of a side of 1.6 m."""
+CLEAR_SHARE = 0.8
+"""Share of the visible part that a line covers at least, where furniture hides the rest."""
 
 
 def lateral_histogram(edges: Mask, axis: int, window_px: int) -> NDArray[np.float32]:
@@ -30,12 +34,16 @@ def lateral_histogram(edges: Mask, axis: int, window_px: int) -> NDArray[np.floa
     return shares.max(axis=axis)
 
 
-def find_lines(edges: Mask, axis: int, window_px: int, share: float, limit: int = 40) -> NDArray[np.float64]:
+def find_lines(
+    edges: Mask, axis: int, window_px: int, share: float, limit: int = 40, visible: Mask | None = None
+) -> NDArray[np.float64]:
     """Positions of the vertical (axis 0) or horizontal (axis 1) lines, as peaks of the lateral histogram.
 
     Args:
         share: Least share of the window that a line covers.
         limit: Most lines that are returned, the strongest ones.
+        visible: Pixels that nothing hides; all where not given. A line may also be hidden in part if it is clear where
+            it is seen.
 
     Returns:
         (L,) columns or rows, ascending; whole numbers are pixel centres.
@@ -43,19 +51,31 @@ def find_lines(edges: Mask, axis: int, window_px: int, share: float, limit: int 
     across = (2 * TOLERANCE_PX + 1, 1) if axis == 0 else (1, 2 * TOLERANCE_PX + 1)
     wide = cv2.dilate(edges.astype(np.uint8), np.ones(across[::-1], np.uint8)) > 0
     covered, sharp = lateral_histogram(wide, axis, window_px), lateral_histogram(edges, axis, window_px)
+    is_line = covered >= share
+    if visible is not None and not visible.all():
+        is_line |= _clear_where_visible(wide, visible, axis, window_px)
     strength = np.convolve(sharp, [0.5, 1.0, 0.5])[1:-1]
     taken = np.zeros(len(sharp), bool)
     lines: list[float] = []
     for peak in np.argsort(-strength, kind="stable"):
         if len(lines) == limit:
             break
-        if covered[peak] < share or taken[peak] or strength[peak] == 0:
+        if not is_line[peak] or taken[peak] or strength[peak] == 0:
             continue
         taken[max(0, peak - SEPARATION_PX + 1) : peak + SEPARATION_PX] = True
         low = max(0, peak - TOLERANCE_PX)
         weights = sharp[low : peak + TOLERANCE_PX + 1]
         lines.append(float((np.arange(low, low + len(weights)) * weights).sum() / weights.sum()))
     return np.sort(np.array(lines, np.float64))
+
+
+def _clear_where_visible(edges: Mask, visible: Mask, axis: int, window_px: int) -> NDArray[np.bool_]:
+    """(W,) or (H,) columns or rows with a window that is hidden in part, and edge over most of what is visible."""
+    size = (1, window_px) if axis == 0 else (window_px, 1)
+    border = cv2.BORDER_CONSTANT
+    seen = cv2.boxFilter(visible.astype(np.float32), -1, size, borderType=border)
+    hits = cv2.boxFilter(edges.astype(np.float32), -1, size, borderType=border)
+    return np.asarray((hits >= CLEAR_SHARE * np.maximum(seen, LEAST_VISIBLE)).any(axis=axis))
 
 
 def pairs(lines: NDArray[np.float64], shortest: float, longest: float) -> NDArray[np.int64]:

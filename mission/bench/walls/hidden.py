@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+import assets
 from sim.rays import Rays
-from sim.scene import ASSETS
 
 _COLUMNS, _ROWS = 25, 30
 """Rays to a panel, and to each side of a frame: within 4 % of the true share, one column."""
@@ -29,7 +29,7 @@ class Hidden:
 @cache
 def scanner_in_base() -> tuple[float, float, float]:
     """Where the beams start, in the robot's base frame [m]."""
-    robot = mujoco.MjModel.from_xml_path(str(ASSETS / "mopad" / "mopad.xml"))
+    robot = mujoco.MjModel.from_xml_path(str(assets.FOLDER / "mopad" / "mopad.xml"))
     data = mujoco.MjData(robot)
     mujoco.mj_kinematics(robot, data)
     x, y, z = (data.site("beam_origin").xpos - data.body("base").xpos).tolist()

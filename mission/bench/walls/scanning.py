@@ -153,8 +153,8 @@ def scan_room(room: BenchRoom, config: MissionConfig, *, seed: int) -> ScannedRo
         samples.append(place(sample, found.world_from_scanner))
         scans.append(_coloured(scan, photos, found.world_from_scanner))
         errors.append(float(np.linalg.norm((found.world_from_scanner - truth)[:3, 3])))
-    structure = find_structure(samples, config.structure)
-    completed = room_from(structure, label_voxels(structure, samples, config.voxels), ())
+    structure = find_structure(samples, config.structure, scanner=config.scanner)
+    completed = room_from(structure, label_voxels(structure, samples, config.voxels, scanner=config.scanner), ())
     return ScannedRoom(
         scans=tuple(scans),
         walls=completed.walls,
