@@ -29,6 +29,8 @@ FAINT_COLOUR = 0.008
 """Least difference of colour on all sides that sets a surface apart, of 1: two grey values."""
 FAINT_DEPTH = 0.003
 """Least difference of depth on all sides that sets a surface apart [m]."""
+WALL_ROUND = 0.5
+"""Least share of wall area round a surface of nearly the wall's colour."""
 OVERSHOOT = 0.15
 """How far beyond its corners the outline of a door must have ended [m]."""
 SAMPLED_PX = 6
@@ -212,7 +214,9 @@ class Steps:
         return not (same & (self.wall_outside < 0.4)).any()
 
     def agree(self) -> bool:
-        """Whether the inside differs from the outside in one way on all visible sides: a surface of its own."""
+        """Whether the inside differs in one way from wall on all visible sides: a surface of its own."""
+        if self.wall_outside.min() < WALL_ROUND:
+            return False
         values = np.column_stack([self.colour / FAINT_COLOUR, self.depth / FAINT_DEPTH])
         values = values[~np.isnan(values).any(axis=1)]
         return len(values) >= 2 and bool(((values >= 1).all(axis=0) | (values <= -1).all(axis=0)).any())

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from detector.candidates import (
     FOOT_SUPPORT,
+    OVERSHOOT,
     Boxes,
     Dominance,
     Scene,
@@ -76,7 +77,7 @@ def find_doors(
     edges = replace(edges, upright=edges.upright & ~hidden, level=edges.level & ~hidden)
     visible = ((seen == Visibility.DATA) | (seen == Visibility.THROUGH)) & ~hidden
     scene = Scene(merged, seen, edges, area.mask, face, visible, floor_row, lowest, parameters.max_protrusion)
-    open_to_view = visible[:lowest]
+    open_to_view = ((seen != Visibility.SHADOWED) & ~hidden)[:lowest]
     upright, level = edges.upright[:lowest], edges.level[:lowest]
     vertical = find_lines(upright, 0, round(parameters.min_height / px), LINE_SHARE, MAX_LINES, open_to_view)
     horizontal = find_lines(level, 1, round(parameters.min_width / px), LINE_SHARE, MAX_LINES, open_to_view)
@@ -154,6 +155,7 @@ def _stand_alone(boxes: Boxes, support: NDArray, feet: NDArray, scene: Scene) ->
     unbroken outline that ends at its corners, and the same small step on all its sides.
     """
     closed = (support.min(axis=1) > CLEAR_SUPPORT) & (feet.min(axis=1) > CLEAR_SUPPORT)
+    closed &= boxes.top * scene.merged.pixel_size > OVERSHOOT  # a plank goes up to the ceiling
     for i in np.flatnonzero(closed)[np.argsort(-support[closed].sum(axis=1), kind="stable")][JUDGED:]:
         closed[i] = False
     closed[closed] = overshoot(boxes[closed], scene) < MAX_OVERSHOOT

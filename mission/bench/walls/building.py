@@ -38,7 +38,7 @@ class Building:
 
 
 def build(plan: RoomPlan, rng: np.random.Generator) -> Building:
-    """Builds a room somewhere in the world, turned by chance."""
+    """Build a room somewhere in the world, turned by chance."""
     kit = Kit()
     position = (float(rng.uniform(-30, 30)), float(rng.uniform(-30, 30)))
     turn = float(rng.uniform(-np.pi, np.pi))

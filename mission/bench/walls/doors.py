@@ -20,7 +20,7 @@ _SEAL = 0.002
 
 
 def build_door(kit: Kit, wall: Body, door: DoorPlan, thickness: float, name: str) -> tuple[str, ...]:
-    """Adds a door to a wall whose slab has the hole for it.
+    """Add a door to a wall whose slab has the hole for it.
 
     Args:
         kit: the world.

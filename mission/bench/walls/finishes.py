@@ -103,9 +103,10 @@ def pick(rng: np.random.Generator, colours: tuple[Colour, ...], spread: float = 
 
 
 def unlike(rng: np.random.Generator, colours: tuple[Colour, ...], other: Colour, least: float = 0.15) -> Colour:
-    """One of the colours that differs from another by so much in at least one channel."""
-    far = tuple(c for c in colours if max(abs(a - b) for a, b in zip(c, other, strict=True)) >= least + 0.03)
-    return pick(rng, far)
+    """One of the colours that differs from another by so much in at least one channel; if none does, the farthest."""
+    differences = [max(abs(a - b) for a, b in zip(colour, other, strict=True)) for colour in colours]
+    bar = min(least + 0.03, max(differences))
+    return pick(rng, tuple(c for c, difference in zip(colours, differences, strict=True) if difference >= bar))
 
 
 def jittered(rng: np.random.Generator, colour: Colour, spread: float) -> Colour:

@@ -1,4 +1,4 @@
-"""Slides what is to hide doors along the walls until it hides as much as it should, and measures what it hides."""
+"""Slide what is to hide doors along the walls until it hides as much as it should, and measure what it hides."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _CORNER = 0.9
 
 
 def fit_occluders(building: Building, origins: NDArray[np.float64]) -> Mapping[tuple[int, int], Hidden]:
-    """Moves the occluders of a building to where they hide most nearly what they should, within the paper's limits.
+    """Move the occluders of a building to where they hide most nearly what they should, within the paper's limits.
 
     Args:
         building: its occluders are moved.

@@ -62,7 +62,7 @@ def scan_places(
     seen: NDArray[np.float64],
     avoid: Sequence[tuple[float, float, float]] = (),
 ) -> tuple[tuple[float, float, float], ...]:
-    """Chooses places to scan from, far from walls and from each other.
+    """Choose places to scan from, far from walls and from each other.
 
     Args:
         rng: source of chance.

@@ -48,7 +48,7 @@ def scanner_origins(scan_places: tuple[tuple[float, float, float], ...]) -> NDAr
 
 
 def hidden_shares(rays: Rays, corners: NDArray[np.float64], origins: NDArray[np.float64]) -> Hidden:
-    """Casts rays at a door.
+    """Cast rays at a door.
 
     Args:
         rays: against the room, past what hides nothing: walls, and the doors themselves.

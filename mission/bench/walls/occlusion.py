@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from mission.bench.walls import furniture
+from mission.bench.walls.filling import judged_wall
 from mission.bench.walls.finishes import seed
 from mission.bench.walls.fixtures import Cupboard
-from mission.bench.walls.interiors import Maker, Site, judged_wall, lay_out, random_door, room
-from mission.bench.walls.plans import DoorPlan, Occluder, RoomPlan, Thing, WallPlan
+from mission.bench.walls.interiors import lay_out, random_door, room
+from mission.bench.walls.plans import DoorPlan, Maker, Occluder, RoomPlan, Site, Thing, WallPlan
 
 _KINDS = ("cupboard", "shelf", "curtain", "plant", "sofa", "screen", "boxes")
 

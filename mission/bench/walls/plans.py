@@ -6,7 +6,7 @@ A wall's own frame has its origin in the face's bottom left corner as seen from 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
@@ -31,7 +31,7 @@ class Thing(Protocol):
         """Along -y, from the back to the front [m]."""
 
     def build(self, kit: Kit, body: Body) -> None:
-        """Adds its geoms to a body at the middle of its back, on the floor."""
+        """Add its geoms to a body at the middle of its back, on the floor."""
 
 
 @dataclass(frozen=True)
@@ -187,6 +187,22 @@ class RoomPlan:
     """x, y [m], heading [rad]."""
     stood: tuple[tuple[float, float, float, Thing], ...] = field(default=())
     """Things anywhere: x, y [m], turn [rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Site:
+    """Where a wall is to be built."""
+
+    length: float
+    height: float
+    paint: Finish
+    """Of the room."""
+    feet: tuple[float, ...]
+    """Places along the wall that the scanner stands square to [m]."""
+
+
+Maker = Callable[[np.random.Generator, Site], WallPlan]
+"""Plans a wall for a site."""
 
 
 def free_spans(taken: Sequence[tuple[float, float]], length: float, least: float) -> list[tuple[float, float]]:

@@ -73,7 +73,7 @@ class BenchRoom:
 
 
 def rooms(seed: int, categories: Collection[str] | None = None) -> list[BenchRoom]:
-    """Generates the benchmark.
+    """Generate the benchmark.
 
     Args:
         seed: varies sizes, colours, pictures, placement and clutter; the same seed gives the same rooms, category by

@@ -8,8 +8,9 @@ from typing import Literal
 
 import numpy as np
 
-from mission.bench.walls.interiors import Maker, Site, judged_wall, lay_out, random_door, room
-from mission.bench.walls.plans import NO_FRAME, DoorPlan, RoomPlan, Side, WallPlan
+from mission.bench.walls.filling import judged_wall
+from mission.bench.walls.interiors import lay_out, random_door, room
+from mission.bench.walls.plans import NO_FRAME, DoorPlan, Maker, RoomPlan, Side, Site, WallPlan
 
 DoorMaker = Callable[[np.random.Generator, Site], DoorPlan]
 

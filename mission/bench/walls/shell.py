@@ -17,7 +17,7 @@ _SKIRTING_DEPTH = 0.014
 
 
 def build_shell(kit: Kit, body: Body, wall: WallPlan, size: tuple[float, float], beyond: tuple[float, float]) -> None:
-    """Adds a wall without its doors.
+    """Add a wall without its doors.
 
     Args:
         kit: the world.
@@ -46,7 +46,7 @@ def build_shell(kit: Kit, body: Body, wall: WallPlan, size: tuple[float, float],
 
 
 def build_beyond(kit: Kit, body: Body, wall: WallPlan, size: tuple[float, float], rng: np.random.Generator) -> None:
-    """Adds what is seen through the wall's openings: a corridor, another room or a yard, with a few things in it."""
+    """Add what is seen through the wall's openings: a corridor, another room or a yard, with a few things in it."""
     length, height = size
     near = wall.thickness - 0.02
     depth = {"corridor": rng.uniform(1.6, 2.2), "room": rng.uniform(2.8, 3.8), "yard": 6.0}[wall.behind]

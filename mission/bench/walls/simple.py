@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from mission.bench.walls import fixtures
-from mission.bench.walls.interiors import Maker, Site, judged_wall, lay_out, random_door, room
-from mission.bench.walls.plans import DoorPlan, RoomPlan, WallPlan
+from mission.bench.walls.filling import judged_wall
+from mission.bench.walls.interiors import lay_out, random_door, room
+from mission.bench.walls.plans import DoorPlan, Maker, RoomPlan, Site, WallPlan
 
 
 def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:

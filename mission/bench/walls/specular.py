@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from mission.bench.walls import finishes
+from mission.bench.walls.filling import judged_wall
 from mission.bench.walls.finishes import WALL_PAINTS
-from mission.bench.walls.interiors import Maker, Site, judged_wall, lay_out, random_door, room
-from mission.bench.walls.plans import DoorPlan, RoomPlan, WallPlan
+from mission.bench.walls.interiors import lay_out, random_door, room
+from mission.bench.walls.plans import DoorPlan, Maker, RoomPlan, Site, WallPlan
 
 
 def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:

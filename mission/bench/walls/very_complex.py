@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from mission.bench.walls import finishes, textures
+from mission.bench.walls.filling import judged_wall
 from mission.bench.walls.finishes import FROSTED, GLASS, WALL_PAINTS, WOODS, Finish
 from mission.bench.walls.fixtures import Cupboard
-from mission.bench.walls.interiors import Maker, Site, judged_wall, lay_out, random_door, room
-from mission.bench.walls.plans import NO_FRAME, DoorPlan, Hung, RoomPlan, Stood, WallPlan, free_spans
+from mission.bench.walls.interiors import lay_out, random_door, room
+from mission.bench.walls.plans import NO_FRAME, DoorPlan, Hung, Maker, RoomPlan, Site, Stood, WallPlan, free_spans
 
 LEAST_DIFFERENCE = (0.0509, 0.0196, 0.0118)
 """In red, green and blue between door and wall, in parts of full scale (section 7.2.2)."""

@@ -141,7 +141,7 @@ def test_semi_open_doors_hinge_left_and_right_and_open_inward_and_outward() -> N
         middle = truth.corners_in_world.mean(axis=0)
         kinds.add(
             (
-                "left" if (leaf.corners_in_world[[0, 3]].mean(axis=0) - middle) @ along < 0 else "right",
+                "left" if (leaf.corners_in_world[0] - middle) @ along < 0 else "right",
                 "outward" if leaf.swing_normal @ outward > 0 else "inward",
             )
         )

@@ -8,7 +8,7 @@ import pytest
 
 from mission.bench.walls import floor_plans, textures
 from mission.bench.walls.doors import build_door
-from mission.bench.walls.finishes import WHITE, Finish, plain
+from mission.bench.walls.finishes import WHITE, Finish, plain, unlike
 from mission.bench.walls.kit import Hole, Kit, slab_quads
 from mission.bench.walls.plans import DoorPlan, free_spans
 from sim.render import Renderer, View, looking_along
@@ -143,3 +143,9 @@ def test_both_leaves_of_a_double_door_and_a_slide_stand_where_the_plan_says() ->
     model, data = compiled(kit)
     np.testing.assert_allclose(data.qpos, [0, 0.5, 0.4])
     np.testing.assert_allclose(data.body("s").xpos[0], 3.4)
+
+
+def test_where_no_colour_is_far_enough_from_another_the_farthest_is_taken() -> None:
+    colours = ((0.5, 0.5, 0.5), (0.55, 0.5, 0.5))
+    taken = unlike(np.random.default_rng(0), colours, (0.5, 0.5, 0.5), least=0.4)
+    np.testing.assert_allclose(taken, colours[1], atol=0.04)  # jittered by 0.03 and a third of it
