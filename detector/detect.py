@@ -25,6 +25,7 @@ from detector.parallel import each
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, WallResult
 from detector.room import DetectorError, Room, View, Wall
+from detector.undercut import with_lower_edge
 from detector.wall_area import find_wall_area
 
 
@@ -75,6 +76,7 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         rectangles = settle_sides(doorway_rectangles(search), look.passed, scene, wall.height, parameters)
     with clock("angles"):
         doors = [describe_door(r, merged, seen, look.around, wall.height, parameters) for r in rectangles]
+        doors = [with_lower_edge(d, look.low, merged, wall.height, floor, parameters) for d in doors]
     return WallResult(
         wall=wall,
         views=tuple(look.views),
@@ -109,6 +111,8 @@ class Look:
     """(H, W) where beams ended well before the wall."""
     around: NDArray[np.float32]
     """(N, 3) points up to a leaf's width from the wall, in wall coordinates [m]."""
+    low: NDArray[np.float32]
+    """(M, 3) points of the slab at the floor and just above it, in wall coordinates [m]."""
 
 
 def look_at(room: Room, wall: Wall, floor: float, parameters: DetectorParameters) -> Look:
@@ -125,6 +129,7 @@ def look_at(room: Room, wall: Wall, floor: float, parameters: DetectorParameters
         passed=np.any([nothing, *(look.passed for look in seeing.values())], axis=0),
         blocked=np.any([nothing, *(look.blocked for look in seeing.values())], axis=0),
         around=np.concatenate([np.zeros((0, 3), np.float32), *(look.around for look in seeing.values())]),
+        low=np.concatenate([np.zeros((0, 3), np.float32), *(look.low for look in seeing.values())]),
     )
 
 
@@ -137,6 +142,7 @@ class _ViewLook(NamedTuple):
     passed: Mask
     blocked: Mask
     around: NDArray[np.float32]
+    low: NDArray[np.float32]
 
 
 def _look_from(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -> _ViewLook | None:
@@ -153,6 +159,7 @@ def _look_from(view: View, wall: Wall, floor: float, parameters: DetectorParamet
         passed=mark(points.passed, wall, gap, parameters),
         blocked=mark(points.blocked, wall, parameters.max_gap_px, parameters),
         around=points.around,
+        low=points.low,
     )
 
 

@@ -14,6 +14,8 @@ from detector.room import DetectorError, View, Wall
 
 LEAF_REACH = 1.7
 """How far from the wall an open leaf can stand [m]."""
+LOW = (-0.01, 0.1)
+"""Heights over the floor of the points that show a leaf's lower edge [m]."""
 MAX_PASSED = 1_500_000
 """Points behind the wall that are enough to outline its holes."""
 BLOCK = 1 << 18
@@ -36,6 +38,8 @@ class WallPoints:
     """(K, 2) where beams that ended well before the wall would have met it; thinned."""
     around: NDArray[np.float32]
     """(L, 3) points up to a leaf's width from the wall, on both sides; thinned before it."""
+    low: NDArray[np.float32]
+    """(F, 3) points of the slab at the floor and just above it."""
     scanner: NDArray[np.float64]
     """(3,) origin of the beams."""
     camera: NDArray[np.float64]
@@ -77,6 +81,7 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
     points = view.points_in_world
     near, deep = _near_and_deep(points, wall, parameters)
     slab = _columns(wall.wall_from_world(points.take(near, axis=0)))
+    low = np.flatnonzero((slab[1] > floor + LOW[0]) & (slab[1] < floor + LOW[1]))
     inside = np.flatnonzero(_inside(slab[0], slab[1], wall) & (slab[1] >= floor + parameters.floor_margin))
     if len(inside) == 0:
         return None
@@ -95,6 +100,7 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
         passed=_crossings(behind, scanner, wall).T,
         blocked=_crossings(_chosen(thinned, front), scanner, wall).T,
         around=np.concatenate([_chosen(thinned, reach), _chosen(behind, beyond)], axis=1).T,
+        low=slab.take(low, axis=1).T,
         scanner=scanner,
         camera=camera,
     )
