@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from detector.angle import slope_in_doorway
 from detector.candidates import Scene
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, Rectangle
@@ -26,6 +27,12 @@ STANDS_OUT = 0.03
 """A frame's face lies this close to the wall's [m]; a leaf that is nearer to the room is none."""
 OPEN_SHARE = 0.5
 """A doorway in which less than this share is in the wall's face has an open or a recessed leaf."""
+FILLED = 0.6
+"""Share of a doorway's columns that a closed leaf fills at least."""
+SHALLOW = 0.06
+"""A leaf less deep than this is seen up to its edges [m]."""
+HALF_GAP = 0.0015
+"""From the middle of the gap between leaf and frame to the leaf [m]; the gap is 2 to 4 mm (DIN 18101)."""
 BORDER_PX = 3
 """Pixels next to the edge that must be hole on one side and face on the other."""
 
@@ -45,7 +52,27 @@ def settle_sides(
     if not parameters.settle_sides or not rectangles:
         return rectangles
     face, values = scene.face & ~passed, components(scene.merged, parameters)
-    return tuple(_settled(r, passed, face, values, scene.merged, height) for r in rectangles)
+    nothing = np.zeros_like(passed)
+    return tuple(
+        _settled(
+            r,
+            nothing if _is_shallow(r, scene.merged, height, parameters) else passed,
+            face,
+            values,
+            scene.merged,
+            height,
+        )
+        for r in rectangles
+    )
+
+
+def _is_shallow(rectangle: Rectangle, merged: Orthoimage, height: float, parameters: DetectorParameters) -> bool:
+    """Whether a closed leaf little behind the wall's face fills a doorway: it shows its own edges.
+
+    Beams to such a leaf cross the face's plane within its outline, the lower the deeper it is.
+    """
+    angle, depth, share = slope_in_doorway(merged.depth, rectangle, height, merged.pixel_size)
+    return share >= FILLED and abs(angle) < parameters.closed_angle and abs(depth) < SHALLOW
 
 
 def _settled(
@@ -82,7 +109,12 @@ def _settled(
     hole, wall = (m[:, columns].mean(axis=1) for m in (passed, face))
     top = _edge(hole, wall, sides[2], reach, centres[2])
     top = _without_frame(wall, _medians(merged.depth[:, columns], 1), top, frame, inside)
-    return Rectangle(left * pixel_size, rectangle.bottom, right * pixel_size, height - top * pixel_size)
+    return Rectangle(
+        left * pixel_size + HALF_GAP,
+        rectangle.bottom,
+        right * pixel_size - HALF_GAP,
+        height - top * pixel_size - HALF_GAP,
+    )
 
 
 def _edge(hole: NDArray, face: NDArray, position: float, reach: int, otherwise: float) -> float:

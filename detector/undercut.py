@@ -32,7 +32,12 @@ FLOOR_PEAK = 4
 
 
 def with_lower_edge(
-    door: Door, low: NDArray[np.float32], merged: Orthoimage, height: float, floor: float, parameters: DetectorParameters
+    door: Door,
+    low: NDArray[np.float32],
+    merged: Orthoimage,
+    height: float,
+    floor: float,
+    parameters: DetectorParameters,
 ) -> Door:
     """The door with its doorway's bottom on the lower edge of the leaf that shows it best; else on the floor.
 

@@ -19,8 +19,8 @@ from detector.room import DetectorError, Room, View, Wall
 from tests.detector.conftest import COARSE, DOORS, STEP_DEG
 from tests.detector.synthetic import Box, DoorSpec, Layout, make_room
 
-LEAST = 0.95
-"""Precision and recall with pixels of 1 cm: two pixels on a door of 0.8 m are 2.5 %."""
+LEAST = 0.94
+"""Precision and recall with pixels of 1 cm: four pixels and the gap round the leaf are 5.4 % of a door of 0.8 m."""
 
 
 def quality(result: WallResult, spec: DoorSpec) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from detector.outline import _settled
+from detector.outline import HALF_GAP, _settled
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, Rectangle
 from detector.subpixel import components, edge_centre
@@ -39,10 +39,11 @@ def test_a_frame_that_was_taken_in_is_left_out(looked_through: bool) -> None:
     assert (settled.left, settled.right, settled.top) == pytest.approx((1.0, 1.9, 2.0), abs=0.011)
 
 
-def test_a_closed_leaf_flush_with_its_frame_keeps_its_outline() -> None:
+def test_a_leaf_is_smaller_than_the_middle_of_the_gap_round_it() -> None:
+    # 1.5 mm on each side
     face = np.ones((250, 300), bool)
     settled = settle(DOORWAY, np.zeros_like(face), face)
-    assert (settled.left, settled.right, settled.top) == pytest.approx((1.0, 1.9, 2.0), abs=1e-6)
+    assert (settled.left, settled.right, settled.top) == pytest.approx((1.0015, 1.8985, 1.9985), abs=1e-6)
 
 
 def test_a_groove_in_a_frame_does_not_end_it() -> None:
@@ -50,7 +51,7 @@ def test_a_groove_in_a_frame_does_not_end_it() -> None:
     face = ~hole()
     face[:, 100:116] = True
     face[:, 105] = False
-    assert settle(DOORWAY, np.zeros_like(face), face).left == pytest.approx(1.0)
+    assert settle(DOORWAY, np.zeros_like(face), face).left == pytest.approx(1.0 + HALF_GAP)
 
 
 def test_a_leaf_that_is_face_in_steps_at_its_hinge_is_no_frame() -> None:
@@ -60,13 +61,13 @@ def test_a_leaf_that_is_face_in_steps_at_its_hinge_is_no_frame() -> None:
     depth = np.zeros_like(WALL.depth)
     depth[:, 100:190] = np.arange(90) * 0.01 * np.tan(np.deg2rad(35))
     settled = settle(DOORWAY, np.zeros_like(face), face, replace(WALL, depth=depth))
-    assert settled.left == pytest.approx(1.0)
+    assert settled.left == pytest.approx(1.0 + HALF_GAP)
 
 
 def test_the_side_of_a_hole_lies_within_the_outermost_pixel_that_a_beam_passed() -> None:
-    # on average in its middle: half a pixel of 1 cm inside the first border
+    # on average in its middle: half a pixel of 1 cm inside the first border, and half the gap
     settled = settle(DOORWAY, hole(), ~hole())
-    assert (settled.left, settled.right, settled.top) == pytest.approx((1.005, 1.895, 1.995), abs=1e-6)
+    assert (settled.left, settled.right, settled.top) == pytest.approx((1.0065, 1.8935, 1.9935), abs=1e-6)
 
 
 @pytest.mark.parametrize("found", [0.985, 1.0, 1.015])
