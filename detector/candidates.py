@@ -27,10 +27,10 @@ STRIP = (0.01, 0.06)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
 FAINT_COLOUR = 0.008
 """Least difference of colour on all sides that sets a surface apart, of 1: two grey values."""
-FAINT_DEPTH = 0.003
-"""Least difference of depth on all sides that sets a surface apart [m]."""
-WALL_ROUND = 0.5
-"""Least share of wall area round a surface of nearly the wall's colour."""
+FAINT_DEPTH = 0.0012
+"""Least difference of depth on all sides that sets a surface apart [m]: 0.1 mm is noise."""
+WALL_ROUND, WALL_BESIDE = 0.5, 0.3
+"""Least share of wall area round a surface of nearly the wall's colour, and on each side of it."""
 OVERSHOOT = 0.15
 """How far beyond its corners the outline of a door must have ended [m]."""
 SAMPLED_PX = 6
@@ -215,7 +215,7 @@ class Steps:
 
     def agree(self) -> bool:
         """Whether the inside differs in one way from wall on all visible sides: a surface of its own."""
-        if self.wall_outside.min() < WALL_ROUND:
+        if self.wall_outside.min() < WALL_BESIDE or self.wall_outside.mean() < WALL_ROUND:
             return False
         values = np.column_stack([self.colour / FAINT_COLOUR, self.depth / FAINT_DEPTH])
         values = values[~np.isnan(values).any(axis=1)]

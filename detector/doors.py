@@ -27,7 +27,7 @@ from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.rectangles import find_lines
 from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rectangle, WallArea
-from detector.selection import smallest
+from detector.selection import covers, smallest
 from detector.sill import hangs
 
 LINE_SHARE = 0.45
@@ -74,23 +74,42 @@ def find_doors(
     floor_row = min(round((height - floor) / px), merged.depth.shape[0])
     lowest = max(1, floor_row - int(np.ceil(parameters.floor_margin / px)) - 1)
     hidden = occluders(merged, edges)
-    edges = replace(edges, upright=edges.upright & ~hidden, level=edges.level & ~hidden)
     visible = ((seen == Visibility.DATA) | (seen == Visibility.THROUGH)) & ~hidden
-    scene = Scene(merged, seen, edges, area.mask, face, visible, floor_row, lowest, parameters.max_protrusion)
     open_to_view = ((seen != Visibility.SHADOWED) & ~hidden)[:lowest]
-    upright, level = edges.upright[:lowest], edges.level[:lowest]
-    vertical = find_lines(upright, 0, round(parameters.min_height / px), LINE_SHARE, MAX_LINES, open_to_view)
-    horizontal = find_lines(level, 1, round(parameters.min_width / px), LINE_SHARE, MAX_LINES, open_to_view)
-    boxes = door_boxes(vertical, horizontal, scene, parameters)
-    search = DoorSearch(
+
+    def search(upright: Mask, level: Mask) -> tuple[Scene, Boxes, tuple[NDArray, NDArray]]:
+        found = replace(edges, upright=upright & ~hidden, level=level & ~hidden)
+        scene = Scene(merged, seen, found, area.mask, face, visible, floor_row, lowest, parameters.max_protrusion)
+        lines = (
+            find_lines(
+                found.upright[:lowest], 0, round(parameters.min_height / px), LINE_SHARE, MAX_LINES, open_to_view
+            ),
+            find_lines(found.level[:lowest], 1, round(parameters.min_width / px), LINE_SHARE, MAX_LINES, open_to_view),
+        )
+        return scene, door_boxes(*lines, scene, parameters), lines
+
+    scene, boxes, (vertical, horizontal) = search(edges.upright, edges.level)
+    candidates = judge(boxes, scene, height, floor, parameters)
+    if parameters.faint_doors:
+        fainter, more, _ = search(edges.faint_upright, edges.faint_level)
+        candidates = with_faint(candidates, judge(more, fainter, height, floor, parameters, faint=True))
+    result = DoorSearch(
         colour_edges=edges.colour,
         depth_edges=edges.depth,
         edges=edges.colour | edges.depth,
         horizontal_lines=np.rint(horizontal).astype(np.int32),
         vertical_lines=np.rint(vertical).astype(np.int32),
-        candidates=judge(boxes, scene, height, floor, parameters),
+        candidates=candidates,
     )
-    return search, scene
+    return result, scene
+
+
+def with_faint(candidates: tuple[Candidate, ...], faint: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+    """The candidates with those doors of faint outline that claim no piece of wall of another, accepted ones first."""
+    accepted = [c for c in candidates if c.rejected_by is None]
+    accepted += [c for c in faint if c.rejected_by is None and not any(covers(c, a) for a in accepted)]
+    accepted.sort(key=lambda c: c.rectangle.left)
+    return (*accepted, *(c for c in candidates if c.rejected_by is not None))
 
 
 def occluders(merged: Orthoimage, edges: Edges) -> Mask:
@@ -104,9 +123,13 @@ def occluders(merged: Orthoimage, edges: Edges) -> Mask:
 
 
 def judge(
-    boxes: Boxes, scene: Scene, height: float, floor: float, parameters: DetectorParameters
+    boxes: Boxes, scene: Scene, height: float, floor: float, parameters: DetectorParameters, *, faint: bool = False
 ) -> tuple[Candidate, ...]:
-    """The rectangles with the shares that the conditions look at, and the first condition that each fails."""
+    """The rectangles with the shares that the conditions look at, and the first condition that each fails.
+
+    Args:
+        faint: Whether the outline is of faint edges, too: then it must stand alone.
+    """
     if len(boxes) == 0:
         return ()
     support, feet = side_support(boxes, scene, parameters)
@@ -117,7 +140,7 @@ def judge(
     reasons = np.full(len(boxes), None, object)
     checks = (
         ("door frame occlusion", support.min(axis=1) < parameters.alpha2),
-        ("location consistency", (wall > parameters.alpha3) & ~alone),
+        ("location consistency", ((wall > parameters.alpha3) | faint) & ~alone),
         ("panel occlusion", visible < least_visible),
         ("floor", feet.min(axis=1) < FOOT_SUPPORT),
         ("surroundings", around.min(axis=1) < FAIRLY_SET),

@@ -22,6 +22,8 @@ COLOUR_ALONG = 0.155
 """The same for colour, which is noisier against the steps that matter [m]."""
 NOISE_FACTOR = 4.0
 """A gradient below this many times the wall's median is texture."""
+FAINT_FACTOR = 5.0
+"""A gradient this many times the wall's median is an edge, if a faint one."""
 GRADIENT_STEPS = 1000
 """Grey values per unit of gradient for Otsu's histogram; stronger gradients than 0.255 count as that."""
 SLOPE_REACH = 0.04
@@ -48,6 +50,10 @@ class Edges:
     """Those that can lie on a horizontal side."""
     sloping: Mask
     """Where the surface turns away from the wall's plane, as a leaf that stands open does."""
+    faint_upright: Mask
+    """Like `upright`, with colour that changes by no more than clearly above its noise."""
+    faint_level: Mask
+    """Like `level`, likewise."""
 
 
 def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) -> Edges:
@@ -57,13 +63,22 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
         seen: (H, W) `Visibility`; the edge of a shadow is no edge of the wall.
     """
     e, f, g = structure_tensor(*colour_derivatives(merged))
-    gradient = di_zenzo(e, f, g)
-    colour = (gradient > colour_threshold(gradient, merged.coloured, parameters)) & merged.coloured
+    gradient = np.where(merged.coloured, di_zenzo(e, f, g), np.float32(0))
+    threshold = colour_threshold(gradient, merged.coloured, parameters)
+    colour = gradient > threshold
+    faint = gradient > min(threshold, faint_threshold(gradient, merged.coloured))
     across = e >= g
     relief = depth_edges(merged.depth, seen, merged.pixel_size, parameters)
-    upright = (colour & across) | (relief.edges & relief.across)
-    level = (colour & ~across) | (relief.edges & ~relief.across)
-    return Edges(colour, relief.edges, upright, level, relief.sloping)
+    steps_across, steps_along = relief.edges & relief.across, relief.edges & ~relief.across
+    return Edges(
+        colour=colour,
+        depth=relief.edges,
+        upright=(colour & across) | steps_across,
+        level=(colour & ~across) | steps_along,
+        sloping=relief.sloping,
+        faint_upright=(faint & across) | steps_across,
+        faint_level=(faint & ~across) | steps_along,
+    )
 
 
 def colour_derivatives(merged: Orthoimage) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -111,6 +126,11 @@ def colour_threshold(gradient: NDArray[np.float32], coloured: Mask, parameters: 
     if parameters.colour_threshold == "otsu":
         return float(otsu)
     return _above_noise(min(otsu, parameters.colour_edge_cap), NOISE_FACTOR, values)
+
+
+def faint_threshold(gradient: NDArray[np.float32], coloured: Mask) -> float:
+    """Gradient that is clearly above the noise of the wall's colour."""
+    return FAINT_FACTOR * float(np.median(gradient[coloured])) if coloured.any() else np.inf
 
 
 def _above_noise(least: float, factor: float, values: NDArray[np.float32]) -> float:

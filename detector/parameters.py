@@ -83,6 +83,9 @@ class DetectorParameters(BaseModel):
     )
     max_protrusion: float = Field(0.06, ge=0, description="a closed leaf stands out no further than this [m]; ours")
 
+    faint_doors: bool = Field(
+        True, description="also look for doors that nearly have the wall's colour, by edges just above the noise; ours"
+    )
     settle_sides: bool = Field(
         True, description="False leaves the sides on the lines of section 6.2, whole pixels; True moves them, ours"
     )

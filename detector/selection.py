@@ -43,7 +43,7 @@ def smallest(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     kept: list[Candidate] = []
     taken: set[int] = set()
     for candidate in accepted:
-        if any(_covers(candidate.rectangle, k.rectangle) for k in kept):
+        if any(covers(candidate, k) for k in kept):
             continue
         alike = [c for c in accepted if id(c) not in taken and _alike(c.rectangle, candidate.rectangle)]
         taken.update(id(c) for c in alike)
@@ -93,8 +93,9 @@ def _decorates(inner: Candidate, outer: Candidate) -> bool:
     return nested and min(inner.side_support) < min(outer.side_support) - DECORATION
 
 
-def _covers(outer: Rectangle, inner: Rectangle) -> bool:
+def covers(a: Candidate, b: Candidate) -> bool:
     """Whether two rectangles claim the same piece of wall."""
+    outer, inner = a.rectangle, b.rectangle
     width = min(outer.right, inner.right) - max(outer.left, inner.left)
     height = min(outer.top, inner.top) - max(outer.bottom, inner.bottom)
     return width > 0 and height > 0 and width * height > 0.3 * min(outer.area, inner.area)

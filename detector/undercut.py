@@ -1,7 +1,7 @@
 """The lower edge of a door's leaf, a finger above the floor, from the points themselves (ours).
 
-Orthoimages begin above the floor's own points. Near the leaf's plane the heights of all points show both: the floor is a
-peak, as wide as the noise of its range seen at a slant, and the leaf is as many points a millimetre from its lower edge
+Orthoimages begin above the floor's own points. Near the leaf's plane the heights of all points show both: the floor is
+a peak, as wide as the noise of its range seen at a slant; the leaf is as many points a millimetre from its lower edge
 upwards.
 """
 
