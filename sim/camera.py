@@ -36,6 +36,10 @@ BRIGHT_SHARE, BRIGHT_LEVEL = 0.98, 0.9
 AMBIENT_DISTANCE = 3.0
 """Distance of the flash that ambient light is measured against [m]."""
 
+SHEEN = 20.0
+"""Exponent of a gloss lobe that has fallen to half its height 15 deg off the mirror direction. A wider one, as of matt
+paint, lights a wall as evenly as matt light does, and is no highlight."""
+
 _NEAREST = 0.5
 """Nearest surface that the flash's view covers up to the edge of the picture [m]."""
 _LEVELS = 2**12
@@ -54,9 +58,6 @@ class CameraParameters(Parameters):
     )
     ambient: float = Field(default=0.5, ge=0, le=100, description="Light in the room, relative to the flash's at 3 m.")
     noise: bool = Field(default=True, description="Photon and read noise.")
-    highlight_level: float = Field(
-        default=0.05, gt=0, le=1, description="Gloss, in parts of full scale, that counts as a highlight."
-    )
 
     @property
     def focal_px(self) -> tuple[float, float]:
@@ -75,8 +76,9 @@ class Photo:
     (0.5, 0.5)."""
     scanner_from_camera: NDArray[np.float64]
     """(4, 4) pose of the camera in the scanner's frame at this shot."""
-    true_highlights: NDArray[np.bool_]
-    """(H, W) where the flash's gloss shows. Truth, for tests and benchmarks only."""
+    true_gloss: NDArray[np.uint8]
+    """(H, W) levels by which the mirror image of the flash brightens the picture, in the mean of the channels: 0 where
+    there is none, where the matt light alone is white, and on sheen. Truth, for tests and benchmarks only."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +91,8 @@ class _Exposure:
     """(H, W) of flash and room, on matt surfaces."""
     gloss: Image
     """(H, W) light of the gloss lobes."""
+    mirrors: NDArray[np.bool_]
+    """(H, W) where the lobe is narrow enough to be a highlight."""
 
 
 class Camera:
@@ -168,7 +172,8 @@ class Camera:
         )
         light = flash_light(inverse_depth, seen, FLASH, window, gloss)
         matt = light.diffuse + np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
-        return _Exposure(np.asarray(cv2.LUT(albedo, _LINEAR), np.float32), matt, light.gloss)
+        mirrors = gloss.exponent > SHEEN
+        return _Exposure(np.asarray(cv2.LUT(albedo, _LINEAR), np.float32), matt, light.gloss, mirrors)
 
     def _develop(self, exposed: _Exposure, gain: float, scanner_from_camera: NDArray[np.float64], seed: int) -> Photo:
         """Sensor and raw converter: photons, noise, clipping, 12 bit, sRGB."""
@@ -184,12 +189,24 @@ class Camera:
         signal *= np.float32(_LEVELS - 1)
         signal += np.float32(0.5)
         image = _SRGB.take(signal.astype(np.uint16))
-        highlights = exposed.gloss * np.float32(gain) > self.parameters.highlight_level
+        gloss = _brightening(exposed, gain)
         focal_x, focal_y = self.parameters.focal_px
-        height, width = highlights.shape
+        height, width = gloss.shape
         intrinsics = np.array([[focal_x, 0, width / 2], [0, focal_y, height / 2], [0, 0, 1]])
         # OpenGL's bottom row first to OpenCV's top row first
-        return Photo(image[::-1].copy(), intrinsics, scanner_from_camera, highlights[::-1].copy())
+        return Photo(image[::-1].copy(), intrinsics, scanner_from_camera, gloss[::-1].copy())
+
+
+def _brightening(exposed: _Exposure, gain: float) -> NDArray[np.uint8]:
+    """(H, W) levels by which highlights brighten the developed picture, noise aside."""
+    levels = np.zeros(exposed.gloss.shape, np.uint8)
+    shine = exposed.gloss * np.float32(gain)
+    where = exposed.mirrors & (shine > 1 / _LEVELS)
+    matt = exposed.albedo[where] * (exposed.light[where] * np.float32(gain))[:, None]
+    both = matt + shine[where][:, None]
+    dark, bright = (_SRGB.take((np.minimum(x, 1) * (_LEVELS - 1) + 0.5).astype(np.uint16)) for x in (matt, both))
+    levels[where] = np.rint((bright.astype(np.float32) - dark).mean(axis=1))
+    return levels
 
 
 def _window(parameters: CameraParameters) -> Window:

@@ -104,7 +104,7 @@ def test_the_highlight_is_at_the_mirror_point(world, renderer_of):
     gloss = '<material name="gloss" rgba=".2 .2 .2 1" specular=".6" shininess=".5"/>'
     shiny = photograph(renderer_of, world(wall(3, material="gloss"), gloss), MEDIUM)[0]
     u, v = project(shiny, np.array([3.0, -FLASH[0] / 2, 0.2]))
-    rows, columns = np.nonzero(shiny.true_highlights)
+    rows, columns = np.nonzero(shiny.true_gloss > 12)
     assert rows.mean() + 0.5 == pytest.approx(v, abs=1)
     assert columns.mean() + 0.5 == pytest.approx(u, abs=1.5)
     white = np.nonzero((shiny.image == 255).all(axis=2))
@@ -112,14 +112,14 @@ def test_the_highlight_is_at_the_mirror_point(world, renderer_of):
 
 
 def test_a_matt_wall_has_no_highlight(world, renderer_of):
-    assert not any(photo.true_highlights.any() for photo in photograph(renderer_of, world(wall(3), MATT)))
+    assert not any(photo.true_gloss.any() for photo in photograph(renderer_of, world(wall(3), MATT)))
 
 
 def test_the_highlight_narrows_with_the_shininess(world, renderer_of):
     areas = []
     for shininess in (0.25, 1.0):
         gloss = f'<material name="gloss" rgba=".5 .5 .5 1" specular=".5" shininess="{shininess}"/>'
-        areas.append(photograph(renderer_of, world(wall(3, material="gloss"), gloss))[0].true_highlights.sum())
+        areas.append((photograph(renderer_of, world(wall(3, material="gloss"), gloss))[0].true_gloss > 12).sum())
     assert areas[0] / areas[1] == pytest.approx(4, rel=0.25)  # area goes with 1 / exponent
 
 
@@ -191,7 +191,25 @@ def test_a_strong_highlight_clips_at_white(world, renderer_of):
     mirror = '<material name="gloss" rgba=".6 .6 .6 1" specular="1" shininess="1"/>'
     photo = photograph(renderer_of, world(wall(3, material="gloss"), mirror), MEDIUM)[0]
     assert (photo.image.max(axis=(0, 1)) == 255).all()
-    assert photo.image[~photo.true_highlights].max() < 250
+    assert photo.true_gloss[(photo.image == 255).all(axis=2)].max() >= 12  # the matt wall is at 0.9 here, sRGB 243
+    assert photo.image[photo.true_gloss == 0].max() < 250
+
+
+def test_gloss_is_what_the_picture_has_more_than_one_of_a_matt_wall(world, renderer_of):
+    colour = '<material name="{}" rgba=".5 .3 .2 1" specular="{}" shininess="1"/>'
+    matt, shiny = (
+        photograph(renderer_of, world(wall(3, material=name), colour.format(name, specular)), MEDIUM)[0]
+        for name, specular in (("dull", 0), ("gloss", 0.2))
+    )
+    brighter = (shiny.image.astype(float) - matt.image).mean(axis=2)
+    assert np.abs(brighter - shiny.true_gloss).max() <= 1  # rounding
+    assert shiny.true_gloss.max() > 30
+
+
+def test_the_sheen_of_matt_paint_is_no_highlight(world, renderer_of):
+    # roughness 0.8 is exponent 2 / 0.8^4 - 2 = 2.9: half height 38 deg off the mirror direction
+    paint = '<material name="paint" rgba=".5 .5 .5 1" specular=".3" roughness=".8"/>'
+    assert not any(photo.true_gloss.any() for photo in photograph(renderer_of, world(wall(3, material="paint"), paint)))
 
 
 def test_colours_of_the_scene_survive(world, renderer_of):

@@ -30,8 +30,8 @@ PACKAGES = ("mujoco", "numpy", "opencv-python-headless", "scipy")
 CAPACITY = 20e9
 """The rooms unused for longest are deleted beyond this [bytes]; the 27 walls of a seed take about 2e9."""
 
-_SCAN = ("elevations", "azimuths", "ranges", "world_from_scanner", "camera_in_world", "colours")
-_MASKS = ("coloured", "glossy")
+_SCAN = ("elevations", "azimuths", "ranges", "world_from_scanner", "camera_in_world", "colours", "gloss")
+_MASKS = ("coloured",)
 _WALL = ("origin", "u", "v", "width", "height", "voxel_labels", "voxel_size")
 
 

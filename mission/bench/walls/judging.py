@@ -83,11 +83,11 @@ def judge_room(room: BenchRoom, config: MissionConfig, *, seed: int, cache: Path
     except MissionError as error:
         return tuple(_judgement(wall, seed, truths, (), remark=str(error)) for wall in room.walls)
     given = scanned.room()
-    glossy = tuple(scan.glossy for scan in scanned.scans)
+    gloss = tuple(scan.gloss for scan in scanned.scans)
     judgements = []
     for wall in room.walls:
         results = tuple(detect_wall(given, w, config.detector) for w in given.walls if is_on_face(w, wall))
-        counts = [count_highlights(result, given, glossy, config.detector) for result in results]
+        counts = [count_highlights(result, given, gloss, config.detector) for result in results]
         judgements.append(
             _judgement(
                 wall,

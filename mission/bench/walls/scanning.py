@@ -44,7 +44,7 @@ STAGES = ("scanner", "camera", "samples", "registration", "structure", "voxels")
 
 @dataclass(frozen=True, eq=False)
 class ColouredScan:
-    """A registered scan with its points' colours: a view of the detector in 7 bytes a beam."""
+    """A registered scan with its points' colours: a view of the detector in 8 bytes a beam."""
 
     elevations: NDArray[np.float64]
     """(E,) [rad]."""
@@ -60,8 +60,9 @@ class ColouredScan:
     """(N, 3) sRGB of the returns, row by row."""
     coloured: NDArray[np.bool_]
     """(N,) where a photograph saw the point."""
-    glossy: NDArray[np.bool_]
-    """(N,) where that photograph shows the flash's gloss. Truth: the detector never sees it."""
+    gloss: NDArray[np.uint8]
+    """(N,) levels by which the mirror image of the flash brightens that photograph. Truth: the detector never sees
+    it."""
 
     def view(self) -> View:
         """As the detector takes it."""
@@ -210,9 +211,7 @@ def _odometry_error(rng: np.random.Generator) -> Pose:
 def _coloured(scan: Scan, photos: tuple[Photo, ...], world_from_scanner: Pose) -> ColouredScan:
     """The scan coloured by the mission, and the truth about gloss taken along the same way as the colour."""
     view = colour_scan(scan, photos, world_from_scanner)
-    gloss = [
-        replace(photo, image=np.repeat(np.uint8(255) * photo.true_highlights[..., None], 3, 2)) for photo in photos
-    ]
+    gloss = [replace(photo, image=np.repeat(photo.true_gloss[..., None], 3, 2)) for photo in photos]
     return ColouredScan(
         elevations=scan.elevations,
         azimuths=scan.azimuths,
@@ -221,5 +220,5 @@ def _coloured(scan: Scan, photos: tuple[Photo, ...], world_from_scanner: Pose) -
         camera_in_world=view.camera_in_world,
         colours=view.colours,
         coloured=view.coloured,
-        glossy=colour_scan(scan, gloss, world_from_scanner).colours[:, 0] > 127,
+        gloss=colour_scan(scan, gloss, world_from_scanner).colours[:, 0].copy(),
     )

@@ -10,9 +10,9 @@ import pytest
 from small_room import small_room
 
 from detector.metrics import overlap
-from detector.result import Door, Leaf, Rectangle
+from detector.result import Door, Leaf, Orthoimage, Rectangle
 from mission.bench.walls import judging
-from mission.bench.walls.glossy import NONE, HighlightCount, compare
+from mission.bench.walls.glossy import NONE, HighlightCount, compare, highlights_in
 from mission.bench.walls.judging import WallJudgement, WallPicture, judge_room
 from mission.bench.walls.rows import DoorRow, door_rows
 from mission.bench.walls.scanning import judged_doors
@@ -189,6 +189,44 @@ def test_a_region_round_a_small_glint_is_false() -> None:
 def test_gloss_that_is_not_asked_for_may_be_marked() -> None:
     handle = squares((0, 0, 10))
     assert compare(squares(), handle, handle, pixel_size=0.005) == HighlightCount(true=0, found=0, marked=1, false=0)
+
+
+def test_a_highlight_that_the_gap_round_a_door_cuts_counts_once() -> None:
+    gloss = squares((40, 40, 20))
+    gloss[:, 48:52] = False  # 20 mm
+    assert compare(gloss, gloss, gloss, pixel_size=0.005) == HighlightCount(true=1, found=1, marked=1, false=0)
+
+
+def flat(depth: float = 0.0) -> Orthoimage:
+    """(100, 100) pixels of 5 mm."""
+    colour, coloured = np.zeros((100, 100, 3), np.uint8), np.ones((100, 100), bool)
+    return Orthoimage(colour, coloured, np.full((100, 100), depth, np.float32), 0.005)
+
+
+def test_a_highlight_brightens_what_is_flat_by_five_percent() -> None:
+    levels = np.where(squares((40, 40, 20)), np.uint8(13), np.uint8(12))  # 5 % of 255 are 12.75
+    for depth in (0.0, -0.06, 0.02):  # the wall, a door in its reveal, a frame
+        found = highlights_in(levels, flat(depth))
+        assert found[44:56, 44:56].all()  # a square loses its corners
+        assert not found[~squares((40, 40, 20))].any()
+
+
+def test_gloss_on_furniture_handles_and_strips_is_no_highlight_of_the_wall() -> None:
+    shiny = np.full((100, 100), 100, np.uint8)
+    assert not highlights_in(shiny, flat(0.1)).any()
+    tube = flat()
+    tube.depth[:, 48:54] = 0.05  # 30 mm wide
+    assert not highlights_in(np.where(tube.depth > 0, shiny, np.uint8(0)), tube).any()
+    edge = np.where(abs(np.arange(100) - 49.5) < 2, shiny, np.uint8(0))  # 20 mm wide
+    assert not highlights_in(edge, flat()).any()
+
+
+def test_gloss_round_a_handle_is_its_plate() -> None:
+    door = flat()
+    door.depth[30:36, 40:60] = 0.05
+    plate = np.where(squares((26, 40, 10)), np.uint8(100), np.uint8(0))
+    assert not highlights_in(plate, door).any()
+    assert highlights_in(plate, flat()).any()
 
 
 def test_counts_of_highlights_add_up() -> None:
