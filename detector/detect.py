@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from detector.doors import doorway_rectangles, find_doors
 from detector.edges import wall_face
+from detector.gloss import compare_views
 from detector.highlights import find_highlights
 from detector.illumination import even_light
 from detector.leaves import describe_door, join_leaves
@@ -64,6 +65,8 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         highlights = each(
             lambda seen: find_highlights(*seen, wall.height, parameters), zip(even, look.cameras, strict=True)
         )
+        if parameters.compare_views:
+            highlights = compare_views(look.views, even, highlights, look.cameras, wall.height, parameters)
     with clock("merging"):
         merged = merge(even, highlights, look.cameras, wall.height, parameters) if even else _empty(wall, parameters)
     with clock("openings"):

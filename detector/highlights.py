@@ -49,7 +49,8 @@ def find_highlights(
         camera: (3,) centre of the camera in wall coordinates [m].
         height: Height of the wall [m].
     """
-    region = region_of_interest(image, camera, height, parameters)
+    angles = incidence(image, camera, height)[0]
+    region = angles < parameters.highlight_roi_angle
     box = bounding_box(region)
     known, shape = image.coloured[box], region.shape
     intensity = _intensity(image.colour[box], known)
@@ -58,19 +59,19 @@ def find_highlights(
     empty = Highlights(region, levels, candidates, np.zeros(shape, bool), (), image.colour)
     if not parameters.correct_highlights or not (region[box] & known).any():
         return empty
-    candidates[box], numbers = _candidates(levels[box], known, region[box], parameters)
+    mirrors = angles[box] < parameters.highlight_mirror_angle
+    candidates[box], centres = _candidates(levels[box], known, region[box] & mirrors, parameters)
     # no lobe reaches further from its centre than the region of interest does: it grows with the distance to the wall
     longest = float(np.tan(parameters.highlight_roi_angle) * abs(camera[2]) / parameters.pixel_size)
     corner = np.array([box[0].start, box[1].start], float)
     drawn, contours = np.zeros(shape, np.uint8), []
-    for number in numbers:
-        rows, columns = np.nonzero(candidates[box] == number)
-        contour = _contour(intensity, known, np.array([rows.mean(), columns.mean()]), longest, parameters)
+    for centre in centres:
+        contour = _contour(intensity, known, centre, longest, parameters)
         if contour is not None:
             contours.append(contour + corner)
             _fill_spline(drawn, contours[-1])
     found = (drawn > 0) & region & image.coloured
-    return Highlights(region, levels, candidates, found, tuple(contours), _repaired(image, found))
+    return Highlights(region, levels, candidates, found, tuple(contours), repaired(image, found))
 
 
 def bounding_box(mask: Mask, margin: int = 0) -> tuple[slice, slice]:
@@ -93,39 +94,25 @@ def _intensity(colour: Image, known: Mask) -> NDArray[np.float32]:
     return np.asarray(cv2.GaussianBlur(closed, (0, 0), SMOOTHING_PX), np.float32)
 
 
-def region_of_interest(
-    image: Orthoimage, camera: NDArray[np.float64], height: float, parameters: DetectorParameters
-) -> Mask:
-    """(H, W) where a view can have highlights: round the foot of the perpendicular from its camera, as a mirror would.
-
-    A Blinn-Phong lobe of MuJoCo's default shininess, exponent 64, is below 1e-5 at its border.
-    """
-    return incidence(image, camera, height)[0] < parameters.highlight_roi_angle
-
-
 def _candidates(
     levels: Image, known: Mask, region: Mask, parameters: DetectorParameters
-) -> tuple[NDArray[np.int32], list[int]]:
-    """Segments of one grey level surrounded by lower levels, largest first.
+) -> tuple[NDArray[np.int32], list[NDArray[np.float64]]]:
+    """Segments of one grey level surrounded by lower levels, largest first, and their centroids as (row, column).
 
     The paper's segments contain no other. An overexposed top is darker in the middle after the fall-off of the flash
     was divided out, so that ours may: the profiles tell it from a ring.
     """
     from skimage.measure import label, regionprops
 
-    coded = np.where(known, levels.astype(np.int32) + 1, 0)
+    coded = np.where(known, levels + np.uint8(1), np.uint8(0))
     segments = label(coded, background=0, connectivity=1)
     count = segments.max() + 1
-    own, highest = np.zeros(count, np.int32), np.full(count, -1, np.int32)
-    own[segments.ravel()] = coded.ravel()
-    border = np.zeros(count, bool)
-    for a, b in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
-        for here, there in ((a, b), (b, a)):
-            differs = segments[here] != segments[there]
-            np.maximum.at(highest, segments[here][differs], coded[there][differs])
-            border[segments[here][differs & (coded[there] == 0)]] = True
-    border[np.unique(np.concatenate([segments[0], segments[-1], segments[:, 0], segments[:, -1]]))] = True
-    peaks = (own > highest) & (highest >= 0) & ~border
+    # neighbours beyond the border count as unknown, and a segment without a neighbour has only these
+    cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+    highest, lowest = (
+        change(coded, cross, borderType=cv2.BORDER_CONSTANT, borderValue=0) for change in (cv2.dilate, cv2.erode)
+    )
+    peaks = np.bincount(segments.ravel(), ((highest > coded) | (lowest == 0)).ravel(), count) == 0
     peaks[0] = False
     minimum = parameters.highlight_min_area / parameters.pixel_size**2 / 8  # the top level is the tip of the highlight
     kept = np.where(peaks[segments], segments, 0)
@@ -135,7 +122,7 @@ def _candidates(
     numbered = np.zeros(count, np.int32)
     for number, segment in enumerate(found[:MAX_CANDIDATES], start=1):
         numbered[segment.label] = number
-    return numbered[segments], list(range(1, 1 + len(found[:MAX_CANDIDATES])))
+    return numbered[segments], [np.array(segment.centroid) for segment in found[:MAX_CANDIDATES]]
 
 
 def _contour(
@@ -205,7 +192,7 @@ def _fill_spline(regions: NDArray[np.uint8], contour: NDArray[np.float64]) -> No
     cv2.fillPoly(regions, [np.rint(outline[:, ::-1]).astype(np.int32)], 1)
 
 
-def _repaired(image: Orthoimage, found: Mask) -> Image:
+def repaired(image: Orthoimage, found: Mask) -> Image:
     """The colour with the highlights filled in, and nothing bled in from where no colour is known."""
     if not found.any():
         return image.colour

@@ -37,13 +37,20 @@ class DetectorParameters(BaseModel):
     # Sections 4.1 and 4.2: highlights and merging
     correct_highlights: bool = Field(True, description="False skips section 4.1, as in Table 5")
     normalise_flash: bool = Field(True, description="divide a view by its fitted flash fall-off before merging; ours")
+    compare_views: bool = Field(True, description="False looks for highlights in one view at a time, as section 4.1")
     grey_levels: int = Field(11, ge=2, le=64, description="levels of the quantised intensity; section 4.1")
     highlight_roi_angle: float = Field(
         0.6, gt=0, le=1.5, description="incidence that bounds the region of interest [rad]"
     )
+    highlight_mirror_angle: float = Field(
+        0.1, gt=0, le=1.5, description="incidence within which a flat wall mirrors a flash beside the lens [rad]; ours"
+    )
     highlight_min_area: float = Field(8e-4, gt=0, description="smallest highlight [m2]; section 7.4")
     highlight_min_contrast: float = Field(
         0.06, gt=0, le=1, description="least height of a highlight over its foot; ours"
+    )
+    gloss_min_contrast: float = Field(
+        0.035, gt=0, le=1, description="least height of a highlight over what other views see there; ours"
     )
     highlight_r2: float = Field(0.9, gt=0, le=1, description="share of variance that the Gaussian must explain; ours")
     w1_mean: float = Field(0.0, description="mean of w1 [rad]; section 4.2")

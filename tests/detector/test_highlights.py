@@ -101,3 +101,12 @@ def test_paint_that_all_views_see_bright_is_kept() -> None:
     paint[40:60, 90:110] = 200  # a white sheet at the foot of the perpendicular
     colour = merged([glossy(0, 12, paint)] * 2, [CAMERA, OBLIQUE], PARAMETERS)
     assert (colour == paint).all()
+
+
+def test_the_middle_of_a_highlight_is_where_a_flat_wall_mirrors_the_flash() -> None:
+    # 60 px are 0.6 m at 2 m: 0.29 rad from the foot of the perpendicular, too much for a flash beside the lens
+    image = glossy(60, 8)
+    aside = CAMERA + [0.6, 0, 0]
+    assert not find_highlights(image, aside, 1.0, PARAMETERS).regions.any()
+    as_in_the_paper = PARAMETERS.model_copy(update={"highlight_mirror_angle": PARAMETERS.highlight_roi_angle})
+    assert find_highlights(image, aside, 1.0, as_in_the_paper).regions[50, 100]
