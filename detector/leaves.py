@@ -8,16 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.angle import fit_leaf, slope_in_doorway
-from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.result import Door, Image, Leaf, Orthoimage, Rectangle
+from detector.sliding import find_slide
 
 MAX_LEAF = 1.3
 """Widest single leaf [m]; wider doorways have two."""
 CLOSED_SHARE = 0.6
 """Share of a doorway's columns that a closed leaf fills at least."""
-SLIDING_SHARE = 0.12
-"""Share of a doorway that the visible part of a sliding leaf fills at least."""
 RIGHT_ANGLE = np.deg2rad(90.0)
 NO_POINTS = np.zeros((0, 2), np.float32)
 
@@ -32,12 +30,21 @@ def describe_door(
 ) -> Door:
     """Kind, state and leaves of the door in a doorway.
 
-    An open doorway in which no leaf was seen keeps one leaf with an angle of NaN, and counts as open.
+    An open doorway in which no leaf was seen keeps one leaf with an angle of NaN, and counts as open. So does one whose
+    leaf is flat on the wall beside it: it may have slid or turned.
 
     Args:
+        doorway: The door's outline; of a leaf that has slid along the face of the wall, with the leaf.
         points: (N, 3) points round the doorway in wall coordinates [m].
         height: Height of the wall [m].
     """
+    missing = Leaf("none", float("nan"), float("nan"), None, NO_POINTS)
+    slide = find_slide(doorway, merged, seen, points, height)
+    if slide is not None:
+        if slide.is_beside:
+            return Door(slide.doorway, "single", "open", (missing,))
+        if not _open_leaf(_double(slide.doorway, merged, points, height, parameters)):
+            return Door(slide.doorway, "sliding", "semi-open", (closed_leaf(slide.way),))
     if _is_closed(doorway, merged, height, parameters):
         if doorway.width > MAX_LEAF:
             return Door(doorway, "double", "closed", (closed_leaf(), closed_leaf()))
@@ -50,15 +57,12 @@ def describe_door(
     if single is not None:
         leaf = _closed_if_shut(single.leaf, parameters)
         return Door(doorway, "single", _state((leaf,)), (leaf,))
-    if _slides(doorway, merged, seen, height, parameters):
-        return Door(doorway, "sliding", "semi-open", (closed_leaf(),))
-    missing = Leaf("none", float("nan"), float("nan"), None, NO_POINTS)
     return Door(doorway, "single", "open", (missing,))
 
 
-def closed_leaf() -> Leaf:
-    """A leaf in the wall's plane."""
-    return Leaf("none", 0.0, 0.0, None, NO_POINTS)
+def closed_leaf(slid: float = 0.0) -> Leaf:
+    """A leaf parallel to the wall, at its closed place or slid along u [m]."""
+    return Leaf("none", 0.0, 0.0, None, NO_POINTS, slid)
 
 
 def _closed_if_shut(leaf: Leaf, parameters: DetectorParameters) -> Leaf:
@@ -94,6 +98,11 @@ def _is_closed(doorway: Rectangle, merged: Orthoimage, height: float, parameters
     return share >= CLOSED_SHARE and abs(angle) < parameters.closed_angle
 
 
+def _open_leaf(leaves: tuple[Leaf, ...] | None) -> bool:
+    """Whether there is a leaf that has turned."""
+    return leaves is not None and any(leaf.opening_angle > 0 for leaf in leaves)
+
+
 def _double(
     doorway: Rectangle, merged: Orthoimage, points: NDArray, height: float, parameters: DetectorParameters
 ) -> tuple[Leaf, Leaf] | None:
@@ -114,23 +123,6 @@ def _double(
             return None
         leaves.append(_closed_if_shut(fit.leaf, parameters))
     return leaves[0], leaves[1]
-
-
-def _slides(doorway: Rectangle, merged: Orthoimage, seen: Image, height: float, parameters: DetectorParameters) -> bool:
-    """Whether part of the doorway is filled by a plane parallel to the wall and part is open."""
-    px = merged.pixel_size
-    cut = np.s_[
-        int((height - doorway.top + 0.05) / px) : int((height - doorway.bottom - 0.1) / px),
-        int((doorway.left + 0.02) / px) : int((doorway.right - 0.02) / px),
-    ]
-    data = (seen[cut] == Visibility.DATA).mean(axis=0) > 0.7
-    through = float((seen[cut] == Visibility.THROUGH).mean())
-    columns = np.flatnonzero(data)
-    if len(columns) < SLIDING_SHARE * data.size or through < SLIDING_SHARE:
-        return False
-    medians = np.nanmedian(merged.depth[cut][:, columns], axis=0)
-    slope = np.polyfit(columns * px, medians, 1)[0]
-    return bool(abs(np.arctan(slope)) < 2 * parameters.closed_angle and np.ptp(columns) < 1.2 * len(columns))
 
 
 def _state(leaves: tuple[Leaf, ...]) -> Literal["closed", "semi-open", "open"]:

@@ -160,6 +160,8 @@ class Leaf:
     """Into the room or out of it; None for a closed or sliding leaf."""
     points: NDArray[np.float32]
     """(N, 2) the slice that the line was fitted to: along u and depth [m]; empty for a closed leaf."""
+    slid: float = 0.0
+    """Way of a sliding leaf from its closed place, along u [m]; 0 for a hinged one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,6 +180,13 @@ class Door:
         """That of the wider open leaf; 0 for a closed or sliding door; NaN if no leaf was seen [rad]."""
         angles = [leaf.opening_angle for leaf in self.leaves if not np.isnan(leaf.opening_angle)]
         return max(angles) if angles else float("nan")
+
+    @property
+    def opened_fraction(self) -> float:
+        """Share of the doorway's width that a sliding door leaves open; NaN for hinged doors."""
+        if self.kind != "sliding":
+            return float("nan")
+        return sum(abs(leaf.slid) for leaf in self.leaves) / self.rectangle.width
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Angles for people and for files: in degrees, rounded, and never -0."""
+"""Angles for people and for files: in degrees, rounded, and never -0; and how far doors that slide are open."""
 
 from __future__ import annotations
 
@@ -16,3 +16,14 @@ def degrees_text(angle: float | None, *, digits: int = 1, unit: str = "") -> str
     """An angle [rad] as "34.8" and the unit, or "-" where there is none."""
     rounded = rounded_degrees(angle, digits)
     return "-" if rounded is None else f"{rounded:.{digits}f}{unit}"
+
+
+def rounded_share(share: float | None, digits: int) -> float | None:
+    """A share of 1; None where there is none."""
+    return None if share is None or not math.isfinite(share) else round(share, digits) + 0.0
+
+
+def opening_text(angle: float | None, opened_fraction: float | None, *, unit: str = "") -> str:
+    """How far a door stands open: "34.8" and the unit; or, if it slides, "45 %" of its doorway; or "-"."""
+    share = rounded_share(opened_fraction, 2)
+    return degrees_text(angle, unit=unit) if share is None else f"{share:.0%}".replace("%", " %")

@@ -36,7 +36,7 @@ class DoorEvaluation:
     corners_in_world: NDArray[np.float64]
     """(4, 3) doorway: bottom left, bottom right, top right, top left seen from inside the room [m]."""
     leaf_corners_in_world: tuple[NDArray[np.float64], ...]
-    """(4, 3) of each leaf at its measured angle, hinge edge first, like the doorway's corners [m]."""
+    """(4, 3) of each leaf as it was measured to stand, hinge edge first, like the doorway's corners [m]."""
     true_name: str | None
     """None for a false positive; so are all fields below."""
     true_angle: float | None
@@ -44,6 +44,8 @@ class DoorEvaluation:
     overlap: Overlap | None
     true_leaf_corners_in_world: tuple[NDArray[np.float64], ...]
     """(4, 3) of each true leaf where it stands [m]."""
+    true_opened_fraction: float | None = None
+    """Way of a sliding door from closed over the doorway's width; None for a hinged door, too."""
 
     @property
     def angle_error(self) -> float | None:
@@ -151,7 +153,16 @@ def _evaluation(door_id: str, number: int, wall: Wall, *, door: Door, truth: Doo
         true_angle=max(angles, default=0.0) if truth else None,
         overlap=overlap(r, rectangle) if rectangle else None,
         true_leaf_corners_in_world=tuple(leaf.corners_in_world for leaf in truth.leaves) if truth else (),
+        true_opened_fraction=true_opened_fraction(truth) if truth else None,
     )
+
+
+def true_opened_fraction(truth: DoorTruth) -> float | None:
+    """Way of a sliding door from closed over the doorway's width; None for a hinged door."""
+    if truth.kind == "hinged":
+        return None
+    width = float(np.linalg.norm(truth.corners_in_world[1] - truth.corners_in_world[0]))
+    return sum(leaf.opening for leaf in truth.leaves) / width
 
 
 def doorway_on(wall: Wall, truth: DoorTruth) -> Rectangle | None:
@@ -175,9 +186,9 @@ def _shared(wall: Wall, door: Door, truth: DoorTruth) -> float:
 
 
 def _leaf_corners(wall: Wall, doorway: Rectangle, leaf: Leaf, *, number: int, count: int) -> NDArray[np.float64]:
-    """(4, 3) corners of a leaf at its measured angle, hinge edge first [m]."""
+    """(4, 3) corners of a leaf at its measured angle or where it has slid to, hinge edge first [m]."""
     width = doorway.width / count
-    left = doorway.left + number * width
+    left = doorway.left + number * width + leaf.slid
     hinge, along = (left + width, -1.0) if leaf.hinge == "right" else (left, 1.0)
     angle = 0.0 if np.isnan(leaf.opening_angle) else leaf.opening_angle
     depth = np.sin(angle) * (-1.0 if leaf.opens == "outward" else 1.0)

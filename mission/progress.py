@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from mission.angles import degrees_text
+from mission.angles import degrees_text, opening_text
 from mission.evaluation import DoorEvaluation
 from mission.events import (
     DoorsEvaluated,
@@ -123,8 +123,8 @@ def _row(evaluation: DoorEvaluation) -> list[str]:
         evaluation.door_id,
         door.state if door.kind == "single" else f"{door.state}, {door.kind}",
         f"{door.rectangle.width:.3f}x{door.rectangle.height:.3f}",
-        degrees_text(door.opening_angle, unit="°"),
-        degrees_text(evaluation.true_angle, unit="°"),
+        opening_text(door.opening_angle, door.opened_fraction, unit="°"),
+        opening_text(evaluation.true_angle, evaluation.true_opened_fraction, unit="°"),
         degrees_text(evaluation.angle_error, unit="°"),
         f"{areas.precision:.3f}" if areas else "-",
         f"{areas.recall:.3f}" if areas else "-",

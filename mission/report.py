@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mission.angles import rounded_degrees
+from mission.angles import rounded_degrees, rounded_share
 from mission.evaluation import DoorEvaluation
 from mission.events import (
     Coloured,
@@ -173,6 +173,7 @@ def _door(evaluation: DoorEvaluation) -> dict[str, Any]:
         "height": _rounded(door.rectangle.height),
         "opening_angle_deg": rounded_degrees(door.opening_angle, 2),
         "leaf_angles_deg": [rounded_degrees(leaf.opening_angle, 2) for leaf in door.leaves],
+        "opened_fraction": rounded_share(door.opened_fraction, 4),
         "hinge": evaluation.hinge,
         "opens": evaluation.opens,
         "truth": _truth(evaluation),
@@ -186,6 +187,7 @@ def _truth(evaluation: DoorEvaluation) -> dict[str, Any] | None:
         "door": evaluation.true_name,
         "angle_deg": rounded_degrees(evaluation.true_angle, 2),
         "angle_error_deg": rounded_degrees(evaluation.angle_error, 2),
+        "opened_fraction": rounded_share(evaluation.true_opened_fraction, 4),
         "precision": _rounded(evaluation.overlap.precision),
         "recall": _rounded(evaluation.overlap.recall),
         "e_abs": _rounded(evaluation.overlap.absolute_error),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.room import VoxelLabel
-from mission.angles import degrees_text
+from mission.angles import opening_text
 
 if TYPE_CHECKING:
     from mission.evaluation import DoorEvaluation
@@ -165,9 +165,12 @@ def quads(corners: Sequence[NDArray[np.float64]]) -> tuple[NDArray[np.float64], 
 
 
 def angle_label(evaluation: DoorEvaluation) -> str:
-    """Estimate beside truth: "34.8 deg (joint 35.0)"."""
-    truth = "no such door" if evaluation.true_name is None else f"joint {degrees_text(evaluation.true_angle)}"
-    return f"{degrees_text(evaluation.door.opening_angle)} deg ({truth})"
+    """Estimate beside truth: "34.8 deg (joint 35.0)"; of a door that slides "45 % open (joint 44 %)"."""
+    joint = opening_text(evaluation.true_angle, evaluation.true_opened_fraction)
+    truth = "no such door" if evaluation.true_name is None else f"joint {joint}"
+    door = evaluation.door
+    unit = "open" if door.kind == "sliding" else "deg"
+    return f"{opening_text(door.opening_angle, door.opened_fraction)} {unit} ({truth})"
 
 
 def jpeg(image: NDArray[np.uint8], *, quality: int = DISPLAY_QUALITY) -> bytes:

@@ -191,6 +191,7 @@ def _detected_door(found: Door) -> dict[str, Any]:
                 "opening_angle": leaf.opening_angle,
                 "opening_angle_std": leaf.opening_angle_std,
                 "opens": leaf.opens or "",
+                "slid": leaf.slid,
             }
             for leaf in found.leaves
         ],
@@ -217,4 +218,6 @@ def _estimate(evaluation: DoorEvaluation) -> dict[str, Any]:
         "angle_error": NAN if evaluation.angle_error is None else evaluation.angle_error,
         "precision": NAN if areas is None else areas.precision,
         "recall": NAN if areas is None else areas.recall,
+        "opened_fraction": found.opened_fraction,
+        "true_opened_fraction": NAN if evaluation.true_opened_fraction is None else evaluation.true_opened_fraction,
     }

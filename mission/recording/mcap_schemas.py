@@ -98,6 +98,8 @@ message DoorEstimate                      # a door as the detector has it, besid
   double angle_error                      # estimate less truth [rad], NaN without either
   double precision                        # shares of area, NaN for a false positive
   double recall
+  double opened_fraction                  # share of the doorway that a sliding door leaves open, NaN if hinged
+  double true_opened_fraction             # truth, NaN for a false positive, too
 
 message DoorEstimates                     # all doors of a room
   repeated DoorEstimate doors
@@ -123,6 +125,7 @@ message DetectedLeaf
   double opening_angle                    # [rad]
   double opening_angle_std                # [rad]
   string opens                            # inward or outward, else empty
+  double slid                             # way of a sliding leaf along the wall, to the right [m]
 
 message Outcome                           # how the mission ended
   string outcome                          # completed, interrupted or failed

@@ -169,6 +169,7 @@ def _row(evaluation: DoorEvaluation) -> rr.AnyValues:
         height_m=door.rectangle.height,
         angle_deg=float(np.degrees(door.opening_angle)),
         angle_std_deg=float(np.degrees(evaluation.opening_angle_std)),
+        opened_fraction=door.opened_fraction,
         joint_deg=nan if evaluation.true_angle is None else float(np.degrees(evaluation.true_angle)),
         error_deg=nan if evaluation.angle_error is None else float(np.degrees(evaluation.angle_error)),
         precision=areas.precision if areas else nan,

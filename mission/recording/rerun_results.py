@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import rerun as rr
 
-from mission.angles import degrees_text
+from mission.angles import degrees_text, opening_text
 from mission.evaluation import DoorEvaluation
 from mission.events import DoorsDetected, DoorsEvaluated, Event, MissionFinished, MissionStarted
 from mission.recording import entities
@@ -185,10 +185,11 @@ def _description(evaluation: DoorEvaluation) -> list[str]:
     size = f"{door.rectangle.width:.2f} x {door.rectangle.height:.2f}"
     deviation = (
         f" ± {degrees_text(evaluation.opening_angle_std, digits=2)}"
-        if np.isfinite(evaluation.opening_angle_std)
+        if np.isfinite(evaluation.opening_angle_std) and door.kind != "sliding"
         else ""
     )
-    return [evaluation.door_id, door.kind, door.state, size, degrees_text(door.opening_angle) + deviation]
+    opening = opening_text(door.opening_angle, door.opened_fraction)
+    return [evaluation.door_id, door.kind, door.state, size, opening + deviation]
 
 
 def _comparison(evaluation: DoorEvaluation) -> list[str]:
@@ -196,7 +197,8 @@ def _comparison(evaluation: DoorEvaluation) -> list[str]:
     if areas is None:
         return ["false positive", "-", "-", "-"]
     error = degrees_text(evaluation.angle_error, digits=2)
-    return [degrees_text(evaluation.true_angle), error, f"{areas.precision:.3f}", f"{areas.recall:.3f}"]
+    joint = opening_text(evaluation.true_angle, evaluation.true_opened_fraction)
+    return [joint, error, f"{areas.precision:.3f}", f"{areas.recall:.3f}"]
 
 
 def _metrics(report: Report) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -38,7 +39,7 @@ def truth(name: str, where: Wall, left: float, right: float, *, angle_deg: float
         np.array([[right, 0.0, depth], [left, 0.0, depth], [left, 2.0, depth], [right, 2.0, depth]])
     )
     one = SimpleNamespace(opening_angle=np.radians(angle_deg), corners_in_world=corners)
-    return SimpleNamespace(name=name, corners_in_world=corners, normal=-where.normal, leaves=(one,))
+    return SimpleNamespace(name=name, kind="hinged", corners_in_world=corners, normal=-where.normal, leaves=(one,))
 
 
 def result(where: Wall, *doors: Door) -> Any:
@@ -163,3 +164,22 @@ def test_doors_are_named_by_room_wall_and_letter() -> None:
     results = [result(where), result(where, door(0.0, 0.9), door(2.0, 2.9))]
     found, _ = evaluate(results, [], room=3, outline=OUTLINE)
     assert [one.door_id for one in found] == ["3.2-a", "3.2-b"]
+
+
+def test_a_sliding_door_is_compared_by_the_share_of_its_doorway() -> None:
+    # a leaf of 1 m is 0.35 m out of its closed place, and was measured to be 0.4 m to the left of it
+    where = wall()
+    joint = truth("rail", where, 1.0, 2.0)
+    joint.kind, joint.leaves[0].opening_angle, joint.leaves[0].opening = "sliding", np.nan, 0.35
+    slid = Door(Rectangle(1.0, 0.0, 2.0, 2.0), "sliding", "semi-open", (replace(leaf(hinge="none"), slid=-0.4),))
+    (found,), _ = evaluate([result(where, slid)], [joint], room=1, outline=OUTLINE)
+    assert (found.door.opened_fraction, found.true_opened_fraction) == pytest.approx((0.4, 0.35))
+    assert found.angle_error == 0.0
+    along = where.wall_from_world(found.leaf_corners_in_world[0])[:, 0]
+    assert along.tolist() == pytest.approx([0.6, 1.6, 1.6, 0.6])
+
+
+def test_a_hinged_door_has_no_opened_fraction() -> None:
+    where = wall()
+    (found,), _ = evaluate([result(where, door(1.0, 2.0))], [truth("oak", where, 1.0, 2.0)], room=1, outline=OUTLINE)
+    assert np.isnan(found.door.opened_fraction) and found.true_opened_fraction is None

@@ -70,6 +70,14 @@ def test_labels_put_the_estimate_beside_the_joint() -> None:
     assert angle_label(evaluation(wall, 2, found, name=None, angle=None)) == "34.8 deg (no such door)"
 
 
+def test_where_a_door_slides_a_label_has_shares_instead_of_angles() -> None:
+    # 0.405 m of a doorway of 0.9 m
+    leaf = replace(door(angle=0.0).leaves[0], slid=-0.405)
+    found = replace(door(angle=0.0), kind="sliding", state="semi-open", leaves=(leaf,))
+    beside = evaluation(walls()[1], 2, found, name="d", angle=0.0)
+    assert angle_label(replace(beside, true_opened_fraction=0.444)) == "45 % open (joint 44 %)"
+
+
 @pytest.mark.parametrize(
     ("angle", "words"), [(JOINT, "31.0"), (None, "-"), (float("nan"), "-"), (-1e-9, "0.0"), (-0.01, "-0.6")]
 )

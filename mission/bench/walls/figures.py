@@ -121,18 +121,20 @@ def _cell(judgement: WallJudgement) -> Image.Image:
 
 def _caption(row: DoorRow) -> tuple[str, tuple[int, int, int]]:
     """A door in one line, and its colour: red for what is wrong."""
-    measured = f"{row.kind}, {row.state}{_at(row.angle_deg)}"
+    measured = f"{row.kind}, {row.state}{_at(row.angle_deg, row.opened_fraction)}"
     if row.is_false_positive:
         return f"false positive: {measured}", FOUND
     hidden = f", {row.panel_hidden:.0%} hidden" if row.panel_hidden and row.panel_hidden >= 0.005 else ""
-    truth = f"{row.true_kind}{_at(row.true_angle_deg)}{hidden}"
+    truth = f"{row.true_kind}{_at(row.true_angle_deg, row.true_opened_fraction)}{hidden}"
     if not row.found:
         return f"missed: {truth}", FOUND
     return f"P {row.precision:.3f}  R {row.recall:.3f}   {measured}   (truth: {truth})", _INK
 
 
-def _at(angle_deg: float | None) -> str:
-    """An angle that is worth a word."""
+def _at(angle_deg: float | None, opened_fraction: float | None) -> str:
+    """An angle that is worth a word, or how far a sliding door is open."""
+    if opened_fraction is not None:
+        return f" at {opened_fraction:.0%}"
     return f" at {angle_deg:.1f} deg" if angle_deg and angle_deg > OPEN_DEG else ""
 
 

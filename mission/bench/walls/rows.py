@@ -9,7 +9,7 @@ import numpy as np
 
 from detector.result import Door
 from mission.bench.walls.rooms import BenchDoor, BenchWall
-from mission.evaluation import DoorEvaluation
+from mission.evaluation import DoorEvaluation, true_opened_fraction
 from sim.doors import DoorTruth
 
 
@@ -25,6 +25,8 @@ class DoorRow:
     true_kind: str | None = None
     true_angle_deg: float | None = None
     """0 for closed and for sliding doors."""
+    true_opened_fraction: float | None = None
+    """Of sliding doors only."""
     panel_hidden: float | None = None
     frame_hidden: float | None = None
     found: bool = False
@@ -34,6 +36,7 @@ class DoorRow:
     angle_deg: float | None = None
     angle_error_deg: float | None = None
     angle_std_deg: float | None = None
+    opened_fraction: float | None = None
     confidence: float | None = None
     precision: float | None = None
     recall: float | None = None
@@ -79,6 +82,7 @@ def _true_row(wall: BenchWall, seed: int, door: BenchDoor, truth: DoorTruth) -> 
         door=truth.name,
         true_kind="sliding" if truth.kind == "sliding" else "double" if len(truth.leaves) > 1 else "single",
         true_angle_deg=_degrees(max(angles, default=0.0)),
+        true_opened_fraction=true_opened_fraction(truth),
         panel_hidden=door.panel_hidden,
         frame_hidden=door.frame_hidden,
     )
@@ -95,6 +99,7 @@ def _measured(row: DoorRow, evaluation: DoorEvaluation) -> DoorRow:
         angle_deg=_degrees(found.opening_angle),
         angle_error_deg=_degrees(evaluation.angle_error),
         angle_std_deg=_degrees(evaluation.opening_angle_std),
+        opened_fraction=None if np.isnan(found.opened_fraction) else found.opened_fraction,
         confidence=confidence_of(found),
     )
     if areas is None:

@@ -95,6 +95,16 @@ def test_a_found_door_has_the_papers_measures() -> None:
     assert found.panel_hidden == 0
 
 
+def test_a_row_of_a_sliding_door_has_the_share_that_is_open() -> None:
+    # 0.27 m of a doorway of 0.9 m
+    seen = detection(TRUE, truth="north_leaf")
+    leaf = replace(seen.door.leaves[0], slid=0.27)
+    (found,) = rows_for(replace(seen, door=replace(seen.door, kind="sliding", leaves=(leaf,))))
+    assert (found.kind, found.opened_fraction) == ("sliding", pytest.approx(0.3))
+    assert found.true_opened_fraction is None  # this one hangs on hinges
+    assert rows_for(seen)[0].opened_fraction is None
+
+
 def test_a_door_without_a_detection_is_missed() -> None:
     (missed,) = rows_for()
     assert (missed.door, missed.found, missed.precision) == ("north_leaf", False, None)
