@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from detector.confidence import judged
 from detector.doors import doorway_rectangles, find_doors
 from detector.edges import wall_face
 from detector.gloss import compare_views
@@ -80,6 +81,7 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
     with clock("angles"):
         doors = [describe_door(r, merged, seen, look.around, wall.height, parameters) for r in rectangles]
         doors = [with_lower_edge(d, look.low, merged, wall.height, floor, parameters) for d in doors]
+        doors = judged(doors, search, scene, wall.height)
     return WallResult(
         wall=wall,
         views=tuple(look.views),

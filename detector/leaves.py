@@ -79,7 +79,8 @@ def join_leaves(doors: list[Door]) -> list[Door]:
             a, b = before.rectangle, door.rectangle
             whole = Rectangle(a.left, min(a.bottom, b.bottom), b.right, (a.top + b.top) / 2)
             leaves = (*before.leaves, *door.leaves)
-            result[-1] = Door(whole, "double", _state(leaves), leaves)
+            sure = min((before, door), key=lambda half: half.confidence)
+            result[-1] = Door(whole, "double", _state(leaves), leaves, sure.confidence, sure.evidence)
         else:
             result.append(door)
     return result

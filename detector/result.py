@@ -7,7 +7,7 @@ room, and pixel (row, column) is centred on u = (column + 0.5) * pixel_size, v =
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,6 +164,25 @@ class Leaf:
     """Way of a sliding leaf from its closed place, along u [m]; 0 for a hinged one."""
 
 
+class Evidence(NamedTuple):
+    """What speaks for a door: shares and steps in [0, 1], of which more is better."""
+
+    outline: float
+    """Mean support of the left, top and right side by discontinuities."""
+    weakest_side: float
+    """Least support of these sides."""
+    one_surface: float
+    """The lesser share of the dominant colour and depth, openings included."""
+    no_wall: float
+    """1 without wall area inside, 0 with a tenth or more."""
+    wall_round: float
+    """Least share of wall along the outside of the three sides."""
+    visible: float
+    """Share that nothing hides."""
+    contrast: float
+    """Change across the faintest of the three sides; 1 is a clear one."""
+
+
 @dataclass(frozen=True, eq=False)
 class Door:
     """A detected door."""
@@ -174,6 +193,10 @@ class Door:
     state: Literal["closed", "semi-open", "open"]
     leaves: tuple[Leaf, ...]
     """From left to right."""
+    confidence: float = float("nan")
+    """Probability that there is a door, in [0, 1]."""
+    evidence: Evidence | None = None
+    """What the confidence was computed from."""
 
     @property
     def opening_angle(self) -> float:

@@ -1,4 +1,4 @@
-"""Angles for people and for files: in degrees, rounded, and never -0; and how far doors that slide are open."""
+"""Angles for people and for files: in degrees, rounded, and never -0; and shares of 1."""
 
 from __future__ import annotations
 
@@ -23,7 +23,13 @@ def rounded_share(share: float | None, digits: int) -> float | None:
     return None if share is None or not math.isfinite(share) else round(share, digits) + 0.0
 
 
+def share_text(share: float | None) -> str:
+    """A share of 1 as "97 %", or "-" where there is none."""
+    rounded = rounded_share(share, 2)
+    return "-" if rounded is None else f"{rounded:.0%}".replace("%", " %")
+
+
 def opening_text(angle: float | None, opened_fraction: float | None, *, unit: str = "") -> str:
     """How far a door stands open: "34.8" and the unit; or, if it slides, "45 %" of its doorway; or "-"."""
-    share = rounded_share(opened_fraction, 2)
-    return degrees_text(angle, unit=unit) if share is None else f"{share:.0%}".replace("%", " %")
+    is_hinged = rounded_share(opened_fraction, 2) is None
+    return degrees_text(angle, unit=unit) if is_hinged else share_text(opened_fraction)

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from mission.angles import degrees_text, opening_text
+from mission.angles import degrees_text, opening_text, share_text
 from mission.evaluation import DoorEvaluation
 from mission.events import (
     DoorsEvaluated,
@@ -106,14 +106,14 @@ def doors_table(event: DoorsEvaluated) -> Table:
     table = Table(
         title=title, title_justify="left", box=SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0)
     )
-    for column in ("door", "state", "size [m]", "angle", "joint", "error", "prec.", "recall"):
+    for column in ("door", "state", "size [m]", "angle", "joint", "error", "prec.", "recall", "sure"):
         right = column not in {"door", "state"}
         table.add_column(column, justify="right" if right else "left", no_wrap=True)
     table.add_column("true door", overflow="fold")
     for door in event.doors:
         table.add_row(*_row(door))
     for name in event.missed:
-        table.add_row(*["[red]missed[/red]", *["-"] * 7, name])
+        table.add_row(*["[red]missed[/red]", *["-"] * 8, name])
     return table
 
 
@@ -128,5 +128,6 @@ def _row(evaluation: DoorEvaluation) -> list[str]:
         degrees_text(evaluation.angle_error, unit="°"),
         f"{areas.precision:.3f}" if areas else "-",
         f"{areas.recall:.3f}" if areas else "-",
+        share_text(door.confidence),
         evaluation.true_name or "[red]false positive[/red]",
     ]

@@ -176,6 +176,7 @@ def _door(evaluation: DoorEvaluation) -> dict[str, Any]:
         "opened_fraction": rounded_share(door.opened_fraction, 4),
         "hinge": evaluation.hinge,
         "opens": evaluation.opens,
+        "confidence": rounded_share(door.confidence, 3),
         "truth": _truth(evaluation),
     }
 

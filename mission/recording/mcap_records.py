@@ -195,6 +195,7 @@ def _detected_door(found: Door) -> dict[str, Any]:
             }
             for leaf in found.leaves
         ],
+        "confidence": found.confidence,
     }
 
 
@@ -220,4 +221,5 @@ def _estimate(evaluation: DoorEvaluation) -> dict[str, Any]:
         "recall": NAN if areas is None else areas.recall,
         "opened_fraction": found.opened_fraction,
         "true_opened_fraction": NAN if evaluation.true_opened_fraction is None else evaluation.true_opened_fraction,
+        "confidence": found.confidence,
     }

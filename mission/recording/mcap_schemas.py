@@ -100,6 +100,7 @@ message DoorEstimate                      # a door as the detector has it, besid
   double recall
   double opened_fraction                  # share of the doorway that a sliding door leaves open, NaN if hinged
   double true_opened_fraction             # truth, NaN for a false positive, too
+  double confidence                       # 0 to 1
 
 message DoorEstimates                     # all doors of a room
   repeated DoorEstimate doors
@@ -119,6 +120,7 @@ message DetectedDoor
   string kind
   string state
   repeated DetectedLeaf leaves            # from left to right
+  double confidence                       # 0 to 1
 
 message DetectedLeaf
   string hinge                            # left, right or none

@@ -174,5 +174,6 @@ def _row(evaluation: DoorEvaluation) -> rr.AnyValues:
         error_deg=nan if evaluation.angle_error is None else float(np.degrees(evaluation.angle_error)),
         precision=areas.precision if areas else nan,
         recall=areas.recall if areas else nan,
+        confidence=door.confidence,
         truth=evaluation.true_name or "",
     )

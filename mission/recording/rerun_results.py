@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import rerun as rr
 
-from mission.angles import degrees_text, opening_text
+from mission.angles import degrees_text, opening_text, share_text
 from mission.evaluation import DoorEvaluation
 from mission.events import DoorsDetected, DoorsEvaluated, Event, MissionFinished, MissionStarted
 from mission.recording import entities
@@ -175,8 +175,22 @@ def _error_row(door: DoorEvaluation) -> tuple[str, float, str]:
 def _door_table(doors: Sequence[DoorEvaluation]) -> list[str]:
     if not doors:
         return ["no doors", ""]
-    head = ["door", "kind", "state", "size [m]", "angle [deg]", "joint [deg]", "error [deg]", "precision", "recall"]
-    rows = [[*_description(evaluation), *_comparison(evaluation)] for evaluation in doors]
+    head = [
+        "door",
+        "kind",
+        "state",
+        "size [m]",
+        "angle [deg]",
+        "joint [deg]",
+        "error [deg]",
+        "precision",
+        "recall",
+        "sure",
+    ]
+    rows = [
+        [*_description(evaluation), *_comparison(evaluation), share_text(evaluation.door.confidence)]
+        for evaluation in doors
+    ]
     return ["| " + " | ".join(row) + " |" for row in [head, ["---"] * len(head), *rows]] + [""]
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from detector.metrics import overlap
 from detector.result import Candidate, Highlights, Orthoimage, Rectangle, WallResult
+from mission.angles import share_text
 from mission.events import DoorsDetected, Event
 from mission.recording import entities
 from mission.recording.drawing import jpeg
@@ -84,7 +85,7 @@ def _draw_merged(rec: rr.RecordingStream, entity: str, result: WallResult) -> No
         ),
     )
     doors = [door.rectangle for door in result.doors]
-    labels = [f"{door.kind}, {door.state}" for door in result.doors]
+    labels = [f"{door.kind}, {door.state}, {share_text(door.confidence)}" for door in result.doors]
     _draw_boxes(rec, f"{entity}/doors", result, doors, colours=[ACCEPTED] * len(doors), labels=labels)
 
 

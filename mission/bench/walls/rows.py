@@ -69,8 +69,8 @@ def door_rows(
 
 
 def confidence_of(door: Door) -> float | None:
-    """How sure the detector is of a door, 0 to 1; None of a detector that does not say."""
-    return getattr(door, "confidence", None)
+    """How sure the detector is of a door, 0 to 1; None where it does not say."""
+    return None if np.isnan(door.confidence) else door.confidence
 
 
 def _true_row(wall: BenchWall, seed: int, door: BenchDoor, truth: DoorTruth) -> DoorRow:

@@ -1,0 +1,83 @@
+"""How sure the detector is of a door: a logistic function of what was measured on it (ours).
+
+Each piece of evidence lies in [0, 1], and more of it never counts against the door, so that a low confidence can be
+explained. The weights were fitted on the walls benchmark to candidates that are doors and to such as were
+rejected and are none; `mission.bench.walls.calibration` does that, and prints them. The confidence decides nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from detector.candidates import Boxes, Scene, steps
+from detector.result import Candidate, Door, DoorSearch, Evidence
+
+BIAS = -12.72
+WEIGHTS = Evidence(
+    outline=1.69,
+    weakest_side=1.45,
+    one_surface=2.04,
+    no_wall=3.99,
+    wall_round=2.71,
+    visible=3.06,
+    contrast=3.15,
+)
+CLEAR_COLOUR = 0.1
+"""A step of colour that leaves no doubt, of 1."""
+CLEAR_DEPTH = 0.03
+"""A step of depth that leaves no doubt [m]."""
+MUCH_WALL = 0.1
+"""A door has less than this share of wall area in it."""
+
+
+def confidence(evidence: Evidence) -> float:
+    """Probability in [0, 1] that a detection with this evidence is a door."""
+    return float(1 / (1 + np.exp(-BIAS - np.dot(WEIGHTS, evidence))))
+
+
+def measure(candidate: Candidate, scene: Scene, height: float) -> Evidence:
+    """The evidence for a candidate.
+
+    Args:
+        height: Height of the wall [m].
+    """
+    r, px = candidate.rectangle, scene.merged.pixel_size
+    left, right, top = (np.array([x / px - 0.5]) for x in (r.left, r.right, height - r.top))
+    box = Boxes(left, right, top)
+    inner = np.s_[int(top[0]) + 1 : scene.lowest_row, int(left[0]) + 1 : int(right[0]) + 1]
+    sides = candidate.side_support[:3]  # the fourth is the floor
+    return Evidence(
+        outline=float(np.mean(sides)),
+        weakest_side=min(sides),
+        one_surface=min(candidate.dominant_colour_share, candidate.dominant_depth_share),
+        no_wall=1 - min(candidate.wall_share / MUCH_WALL, 1.0),
+        wall_round=candidate.surroundings,
+        visible=float(scene.visible[inner].mean()),
+        contrast=_contrast(box, scene),
+    )
+
+
+def _contrast(box: Boxes, scene: Scene) -> float:
+    """Step across the faintest side of a rectangle that can be compared, of a clear one; 1 where none can."""
+    change = steps(box, scene)
+    sizes = np.fmax(np.abs(change.colour).max(axis=1) / CLEAR_COLOUR, np.abs(change.depth) / CLEAR_DEPTH)
+    known = sizes[~np.isnan(sizes)]
+    return float(min(known.min(), 1.0)) if len(known) else 1.0
+
+
+def judged(doors: Sequence[Door], search: DoorSearch, scene: Scene, height: float) -> list[Door]:
+    """The doors with their confidences.
+
+    Args:
+        doors: One for each accepted candidate, in their order.
+        height: Height of the wall [m].
+    """
+    accepted = [c for c in search.candidates if c.rejected_by is None]
+    result = []
+    for door, candidate in zip(doors, accepted, strict=True):
+        evidence = measure(candidate, scene, height)
+        result.append(replace(door, confidence=confidence(evidence), evidence=evidence))
+    return result
