@@ -9,11 +9,13 @@ import numpy as np
 from mission.bench.walls.doors import build_door
 from mission.bench.walls.floor_plans import grown, reflex_corners, side_lengths
 from mission.bench.walls.kit import Body, Kit
-from mission.bench.walls.plans import RoomPlan, WallPlan
+from mission.bench.walls.plans import Occluder, RoomPlan, WallPlan
 from mission.bench.walls.shell import build_beyond, build_shell
 
 _UNDER_WALLS = 0.05
 """How far floor and ceiling reach into the walls, so that no light falls between [m]."""
+BURIED = 20.0
+"""Below the floor, where nothing is seen [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,8 +30,8 @@ class Building:
     """Of the plan in the world [rad]."""
     leaves: dict[tuple[int, int], tuple[str, ...]]
     """Names of the bodies of the leaves by the numbers of wall and door."""
-    occluders: dict[tuple[int, int], Body]
-    """By the numbers of wall and occluder."""
+    occluders: dict[tuple[int, int], tuple[Body, ...]]
+    """In all sizes, below the floor until one is fitted, by the numbers of wall and occluder."""
 
     def to_world(self, points: np.ndarray) -> np.ndarray:
         """Points (..., 2) of the plan in the world [m]."""
@@ -45,7 +47,7 @@ def build(plan: RoomPlan, rng: np.random.Generator) -> Building:
     room = kit.spec.worldbody.add_body(name="building", pos=[*position, 0], quat=_about_z(turn))
     _build_floor_and_ceiling(kit, room, plan)
     leaves: dict[tuple[int, int], tuple[str, ...]] = {}
-    occluders: dict[tuple[int, int], Body] = {}
+    occluders: dict[tuple[int, int], tuple[Body, ...]] = {}
     lengths, reflex = side_lengths(plan.corners), reflex_corners(plan.corners)
     for number, wall in enumerate(plan.walls):
         body = _add_wall_body(room, plan, number)
@@ -58,9 +60,7 @@ def build(plan: RoomPlan, rng: np.random.Generator) -> Building:
             build_beyond(kit, body, wall, size, rng)
         _build_things(kit, body, wall)
         for index, occluder in enumerate(wall.occluders):
-            place = [wall.doors[occluder.door].left, -occluder.away, occluder.z]  # until it is fitted
-            occluders[number, index] = body.add_body(name=f"occluder {number + 1}.{index + 1}", pos=place)
-            occluder.thing.build(kit, occluders[number, index])
+            occluders[number, index] = _build_sizes(kit, body, occluder, f"occluder {number + 1}.{index + 1}")
     for x, y, turned, thing in plan.stood:
         thing.build(kit, room.add_body(pos=[x, y, 0], quat=_about_z(turned)))
     kit.spec.assets = kit.assets
@@ -86,6 +86,14 @@ def _build_things(kit: Kit, body: Body, wall: WallPlan) -> None:
     for stood in wall.stood:
         thing = body.add_body(pos=[stood.x, -stood.away, 0], quat=_about_z(stood.turned))
         stood.thing.build(kit, thing)
+
+
+def _build_sizes(kit: Kit, wall: Body, occluder: Occluder, name: str) -> tuple[Body, ...]:
+    bodies = []
+    for size, thing in enumerate(occluder.sizes, start=1):
+        bodies.append(wall.add_body(name=f"{name} size {size}", pos=[0.0, 0.0, -BURIED]))
+        thing.build(kit, bodies[-1])
+    return tuple(bodies)
 
 
 def _about_z(turn: float) -> list[float]:

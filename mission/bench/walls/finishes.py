@@ -29,6 +29,14 @@ DOOR_PAINTS: tuple[Colour, ...] = (
     (0.36, 0.37, 0.39),
     (0.72, 0.60, 0.30),
 )
+DADO_PAINTS: tuple[Colour, ...] = (
+    (0.42, 0.50, 0.57),
+    (0.40, 0.51, 0.43),
+    (0.62, 0.52, 0.40),
+    (0.50, 0.50, 0.51),
+    (0.56, 0.34, 0.29),
+)
+"""Darker than any wall above them."""
 WOODS: tuple[Colour, ...] = ((0.62, 0.44, 0.27), (0.72, 0.56, 0.38), (0.45, 0.29, 0.18), (0.53, 0.36, 0.22))
 
 
@@ -107,6 +115,12 @@ def unlike(rng: np.random.Generator, colours: tuple[Colour, ...], other: Colour,
     differences = [max(abs(a - b) for a, b in zip(colour, other, strict=True)) for colour in colours]
     bar = min(least + 0.03, max(differences))
     return pick(rng, tuple(c for c, difference in zip(colours, differences, strict=True) if difference >= bar))
+
+
+def mixed(colour: Colour, other: Colour) -> Colour:
+    """Halfway between two colours."""
+    r, g, b = (0.5 * np.add(colour, other)).tolist()
+    return r, g, b
 
 
 def jittered(rng: np.random.Generator, colour: Colour, spread: float) -> Colour:

@@ -167,6 +167,28 @@ class Boxes:
 
 
 @dataclass(frozen=True)
+class Pair:
+    """Two equally wide things with a way between them."""
+
+    left: Thing
+    right: Thing
+    gap: float
+    """Between them [m]."""
+
+    @property
+    def width(self) -> float:
+        return self.left.width + self.gap + self.right.width
+
+    @property
+    def depth(self) -> float:
+        return max(self.left.depth, self.right.depth)
+
+    def build(self, kit: Kit, body: Body) -> None:
+        for thing, side in ((self.left, -1), (self.right, 1)):
+            thing.build(kit, body.add_body(pos=[side * (self.width - thing.width) / 2, 0, 0]))
+
+
+@dataclass(frozen=True)
 class Screen:
     """A folding screen or a mobile board on feet."""
 

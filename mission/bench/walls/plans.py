@@ -144,13 +144,23 @@ class Occluder:
     door: int
     """Index of the door in the wall."""
     away: float
-    thing: Thing
-    share: float
+    """Of its back from the wall [m]."""
+    sizes: tuple[Thing, ...]
+    """The thing in several sizes; the one that fits best is taken."""
+    panel_share: float
     """Of the panel that it is to hide, 0..1."""
-    most: float = 0.48
-    """Of the door's width that it may stand before; what is tall must leave a way through."""
-    z: float = 0.0
-    """Of its lower end above the floor [m]."""
+    frame_share: float
+    """Likewise of the frame's left, upper and right side together."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """A part of a wall painted in another colour, from end to end."""
+
+    bottom: float
+    """Above the floor [m]."""
+    top: float
+    finish: Finish
 
 
 @dataclass(frozen=True)
@@ -158,12 +168,15 @@ class WallPlan:
     """One side of a room."""
 
     finish: Finish
+    """Of all but its bands."""
     thickness: float
     doors: tuple[DoorPlan, ...] = ()
     windows: tuple[WindowPlan, ...] = ()
     hung: tuple[Hung, ...] = ()
     stood: tuple[Stood, ...] = ()
     occluders: tuple[Occluder, ...] = ()
+    bands: tuple[Band, ...] = ()
+    """From the floor up."""
     skirting: Finish | None = None
     skirting_height: float = 0.08
     behind: Literal["corridor", "room", "yard"] = "corridor"

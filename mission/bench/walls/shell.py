@@ -28,21 +28,30 @@ def build_shell(kit: Kit, body: Body, wall: WallPlan, size: tuple[float, float],
     """
     length, height = size
     holes = [door.hole for door in wall.doors] + [window.hole for window in wall.windows]
-    lower = (-beyond[0], 0.0, -_OVERLAP)
-    upper = (length + beyond[1], wall.thickness, height + _OVERLAP)
     pocket = next((door for door in wall.doors if door.slides and 0 < door.recess < wall.thickness - 0.04), None)
-    if pocket is None:
-        kit.slab(body, lower, upper, wall.finish, holes)
-    else:  # two skins with the leaf between them
-        near, far = pocket.recess - 0.008, pocket.recess + 0.048
-        kit.slab(body, lower, (upper[0], near, upper[2]), wall.finish, holes)
-        kit.slab(body, (lower[0], far, lower[2]), upper, wall.finish, holes)
+    skins = [(0.0, wall.thickness)]
+    if pocket:  # the leaf is between two
+        skins = [(0.0, pocket.recess - 0.008), (pocket.recess + 0.048, wall.thickness)]
+    for near, far in skins:
+        for bottom, top, finish in _painted(wall, -_OVERLAP, height + _OVERLAP):
+            kit.slab(body, (-beyond[0], near, bottom), (length + beyond[1], far, top), finish, holes)
     for window in wall.windows:
         _build_window(kit, body, window, wall.thickness)
     if wall.skirting:
         taken = [door.reach if door.frame.style != "none" else (door.left, door.right) for door in wall.doors]
         for low, high in free_spans(taken, length, 0.02):
             kit.box(body, (low, -_SKIRTING_DEPTH, 0), (high, 0, wall.skirting_height), wall.skirting)
+
+
+def _painted(wall: WallPlan, bottom: float, top: float) -> list[tuple[float, float, Finish]]:
+    """Lower and upper end [m] and finish of each stretch of a wall, from the bottom up."""
+    found, z = [], bottom
+    for band in wall.bands:
+        if band.bottom > z:
+            found.append((z, band.bottom, wall.finish))
+        found.append((band.bottom, band.top, band.finish))
+        z = band.top
+    return [*found, (z, top, wall.finish)]
 
 
 def build_beyond(kit: Kit, body: Body, wall: WallPlan, size: tuple[float, float], rng: np.random.Generator) -> None:

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from mission.bench.walls.finishes import WHITE
-from mission.bench.walls.fitting import places_for
-from mission.bench.walls.fixtures import Cupboard
-from mission.bench.walls.hidden import hidden_shares, scanner_origins
-from mission.bench.walls.plans import DoorPlan, Occluder, WallPlan
+from mission.bench.walls.fitting import is_fair, places_for
+from mission.bench.walls.hidden import Hidden, hidden_shares, scanner_origins
+from mission.bench.walls.plans import DoorPlan, WallPlan
 from mission.bench.walls.rooms import BenchRoom, rooms
 from sim.camera import Camera
 from sim.doors import true_doors
@@ -48,6 +47,33 @@ def test_a_board_up_to_half_height_hides_half_the_panel_and_both_sides_up_to_it(
     assert hidden.frame == pytest.approx(2 / 5, abs=0.04)
 
 
+def test_a_board_over_an_upright_hides_that_side_and_the_corner_above_it() -> None:
+    # over the left upright and a fifth of the top, its upper edge 2 cm above the frame's
+    whole = hidden_shares(board((-0.5, 0.2), (-1, 2.05)), PANEL, AHEAD)
+    np.testing.assert_allclose(whole.sides, (1, 0.2, 0), atol=0.04)
+    assert not whole.corners_seen and not is_fair(whole)
+    # 1 m of the left upright's 2 m
+    half = hidden_shares(board((-0.5, 0.2), (-1, 1.0)), PANEL, AHEAD)
+    np.testing.assert_allclose(half.sides, (0.5, 0, 0), atol=0.04)
+    assert half.corners_seen and is_fair(half)
+
+
+def test_an_upper_corner_counts_as_seen_from_one_place_that_sees_all_of_it() -> None:
+    # 1 m before the wall a rod at the left upright's height: seen from ahead it is before the corner
+    rays = board((-0.05, 0.1), (1.5, 2.5), y=-1.0)
+    ahead, beside = np.array([0.0, -4.0, 1.9]), np.array([2.5, -4.0, 1.9])
+    assert not hidden_shares(rays, PANEL, ahead[None]).corners_seen
+    assert hidden_shares(rays, PANEL, np.array([ahead, beside])).corners_seen
+
+
+def test_a_door_is_fair_up_to_40_percent_of_its_panel_50_of_its_frame_and_60_of_each_side() -> None:
+    assert is_fair(Hidden(panel=0.4, frame=0.5, sides=(0.6, 0.2, 0.6)))
+    assert not is_fair(Hidden(panel=0.41, frame=0.2))
+    assert not is_fair(Hidden(panel=0.2, frame=0.51))
+    assert not is_fair(Hidden(panel=0.2, frame=0.3, sides=(0.61, 0, 0)))
+    assert not is_fair(Hidden(panel=0.2, frame=0.3, corners_seen=False))
+
+
 def test_what_one_scan_place_sees_is_not_hidden() -> None:
     # 1 m before the panel a board of 0.3 m throws shadows of 0.4 m; seen from 2 m left and right they are 1.3 m apart
     rays = board((0.35, 0.65), (-1, 2.5), y=-1.0)
@@ -68,9 +94,7 @@ def test_the_scanner_of_a_turned_robot_is_above_its_base_and_turned_with_it() ->
 
 def test_an_occluder_may_stand_before_its_own_door_only_and_not_in_the_right_corner() -> None:
     doors = tuple(DoorPlan(left, 0.8, 2.0, WHITE) for left in (1.2, 3.4))
-    occluder = Occluder(1, 0.05, Cupboard(0.8, 1.9, 0.4, WHITE), 0.3)
-    wall = WallPlan(WHITE, 0.2, doors, occluders=(occluder,))
-    places = places_for(wall, occluder, 5.0)
+    places = places_for(WallPlan(WHITE, 0.2, doors), 1, 0.8, 5.0)
     assert places and min(places) - 0.4 > 2.0  # right of the other door
     assert max(places) + 0.4 < 5.0 - 0.9
     assert all(abs(x - 3.8) < 0.8 for x in places)  # before some of its own

@@ -10,7 +10,9 @@ from mission.bench.walls import floor_plans, textures
 from mission.bench.walls.doors import build_door
 from mission.bench.walls.finishes import WHITE, Finish, plain, unlike
 from mission.bench.walls.kit import Hole, Kit, slab_quads
-from mission.bench.walls.plans import DoorPlan, free_spans
+from mission.bench.walls.plans import Band, DoorPlan, WallPlan, free_spans
+from mission.bench.walls.shell import build_shell
+from sim.rays import Rays
 from sim.render import Renderer, View, looking_along
 
 
@@ -113,6 +115,23 @@ def test_scan_places_keep_off_walls_and_tables_and_see_what_they_should() -> Non
 
 def test_free_spans_are_what_doors_leave_of_a_wall() -> None:
     assert free_spans([(1.0, 2.0), (1.5, 2.2), (4.9, 5.5)], 6.0, 0.6) == [(0.0, 1.0), (2.2, 4.9)]
+
+
+def test_a_wall_with_a_dado_has_its_colour_up_to_its_height_and_the_wall_s_above() -> None:
+    kit = Kit()
+    dado, paint = plain((0.3, 0.4, 0.5)), plain((0.9, 0.9, 0.8))
+    wall = WallPlan(paint, 0.2, (DoorPlan(1.0, 1.0, 2.0, WHITE),), bands=(Band(0.0, 1.2, dado),))
+    build_shell(kit, kit.spec.worldbody.add_body(), wall, (4.0, 2.6), (0.0, 0.0))
+    model, data = compiled(kit)
+    rays = Rays(model, data)
+
+    def colour(x: float, z: float) -> tuple[float, ...] | None:
+        hits = rays.cast(np.array([x, -1.0, z]), np.array([[0.0, 1, 0]]))
+        return tuple(model.mat_rgba[model.geom_matid[hits.geoms[0]], :3].round(3)) if hits.geoms[0] >= 0 else None
+
+    assert [colour(0.5, z) for z in (0.1, 1.19, 1.21, 2.5)] == [dado.colour] * 2 + [paint.colour] * 2
+    assert colour(1.5, 0.6) is colour(1.5, 1.6) is None  # through the doorway
+    assert colour(1.5, 2.3) == paint.colour
 
 
 @pytest.mark.parametrize("hinge", ["left", "right"])
