@@ -13,7 +13,8 @@ from mission.bench.walls.building import BURIED, Building
 from mission.bench.walls.floor_plans import side_lengths
 from mission.bench.walls.hidden import Hidden, hidden_shares
 from mission.bench.walls.kit import Body
-from mission.bench.walls.plans import DoorPlan, Occluder, WallPlan
+from mission.bench.walls.plans import DoorPlan, WallPlan
+from sim.openings import fit
 from sim.rays import Rays
 
 MOST_PANEL_HIDDEN, MOST_FRAME_HIDDEN = 0.40, 0.50
@@ -22,8 +23,10 @@ MOST_SIDE_HIDDEN = 0.60
 """Of each of the frame's sides. Section 6.2 of the paper permits 40 %, with which no half of a frame could be hidden;
 with more, or with an upper corner hidden, nothing in the scans would tell where the side is."""
 
-_STEP = 0.06
+_STEP = 0.07
 """Between the places that are tried for an occluder [m]."""
+_MOST_OFF = 0.25
+"""Between what is hidden of panel and frame together and what should be."""
 _ROUNDS = 3
 """How often an occluder is moved that hides too much together with those put up after it."""
 CORNER = 0.9
@@ -45,16 +48,18 @@ def fit_occluders(building: Building, origins: NDArray[np.float64]) -> Mapping[t
         What is hidden of each door, by the numbers of wall and door.
 
     Raises:
-        NoPlaceError: a door would not be fair, see `is_fair`.
+        NoPlaceError: a door would not be fair, see `is_fair`, or too little of it free to count as one.
     """
     model = building.kit.spec.compile()
     data = mujoco.MjData(model)
-    trial = _Trial(building, model, data, Rays(model, data, _passed(building, model)), origins)
+    leaves = frozenset(model.body(name).id for names in building.leaves.values() for name in names)
+    past_walls = Rays(model, data, leaves | _walls(building, model))
+    trial = _Trial(building, model, data, past_walls, Rays(model, data, leaves), origins)
     chosen: dict[tuple[int, int], int] = {}
     unfair = list(building.occluders)
     for _ in range(_ROUNDS):
         chosen |= {key: _fit(trial, *key) for key in unfair}
-        unfair = [key for key in building.occluders if not is_fair(trial.hidden_by(*key))]
+        unfair = [key for key in building.occluders if not trial.is_good(*key)]
     if unfair:
         raise NoPlaceError(f"occluders of {len(unfair)} doors are in each other's way")
     for key, size in chosen.items():
@@ -71,11 +76,24 @@ class _Trial:
     building: Building
     model: mujoco.MjModel
     data: mujoco.MjData
-    rays: Rays
+    past_walls: Rays
+    """Against furniture."""
+    past_leaves: Rays
+    """Against all but the doors."""
     origins: NDArray[np.float64]
 
     def put(self, body: Body, place: tuple[float, float, float]) -> None:
         body.pos = self.model.body(body.name).pos[:] = place
+
+    def is_good(self, number: int, index: int) -> bool:
+        """Whether the door of a wall's occluder is fair, and one that the simulator's truth knows as a door."""
+        return is_fair(self.hidden_by(number, index)) and self.is_doorway(number, index)
+
+    def is_doorway(self, number: int, index: int) -> bool:
+        """Whether the door of a wall's occluder has enough free way before it to count as one."""
+        mujoco.mj_kinematics(self.model, self.data)
+        wall = self.building.plan.walls[number]
+        return fit(self.past_leaves, _face(self.data, number, wall.doors[wall.occluders[index].door])).closes
 
     def hidden_by(self, number: int, index: int) -> Hidden:
         """What is hidden of the door of a wall's occluder."""
@@ -85,7 +103,7 @@ class _Trial:
         """What is hidden of a wall's door."""
         mujoco.mj_kinematics(self.model, self.data)
         door = self.building.plan.walls[number].doors[index]
-        return hidden_shares(self.rays, _face(self.data, number, door), self.origins)
+        return hidden_shares(self.past_walls, _face(self.data, number, door), self.origins)
 
 
 def _fit(trial: _Trial, number: int, index: int) -> int:
@@ -99,18 +117,16 @@ def _fit(trial: _Trial, number: int, index: int) -> int:
         for x in places_for(wall, occluder.door, thing.width, length):
             trial.put(body, (x, -occluder.away, 0.0))
             hidden = trial.hidden_by(number, index)
-            if is_fair(hidden):
-                errors[size, x] = _error(hidden, occluder)
+            error = abs(hidden.panel - occluder.panel_share) + abs(hidden.frame - occluder.frame_share)
+            if is_fair(hidden) and error < _MOST_OFF:
+                errors[size, x] = error
         trial.put(body, (0.0, 0.0, -BURIED))
-    if not errors:
-        raise NoPlaceError(f"no place for the occluder of door {occluder.door + 1} in wall {number + 1}")
-    size, x = min(errors, key=lambda key: errors[key])
-    trial.put(bodies[size], (x, -occluder.away, 0.0))
-    return size
-
-
-def _error(hidden: Hidden, occluder: Occluder) -> float:
-    return abs(hidden.panel - occluder.panel_share) + abs(hidden.frame - occluder.frame_share)
+    for size, x in sorted(errors, key=lambda key: errors[key]):
+        trial.put(bodies[size], (x, -occluder.away, 0.0))
+        if trial.is_doorway(number, index):
+            return size
+        trial.put(bodies[size], (0.0, 0.0, -BURIED))
+    raise NoPlaceError(f"no place for the occluder of door {occluder.door + 1} in wall {number + 1}")
 
 
 def is_fair(hidden: Hidden) -> bool:
@@ -135,11 +151,10 @@ def places_for(wall: WallPlan, number: int, width: float, length: float) -> list
     return found
 
 
-def _passed(building: Building, model: mujoco.MjModel) -> frozenset[int]:
-    """Bodies that are no furniture."""
+def _walls(building: Building, model: mujoco.MjModel) -> frozenset[int]:
+    """Bodies of what is built of stone."""
     walls = (f"wall {number + 1}" for number in range(len(building.plan.walls)))
-    leaves = (name for names in building.leaves.values() for name in names)
-    return frozenset(model.body(name).id for name in ("building", *walls, *leaves))
+    return frozenset(model.body(name).id for name in ("building", *walls))
 
 
 def _face(data: mujoco.MjData, number: int, door: DoorPlan) -> NDArray[np.float64]:

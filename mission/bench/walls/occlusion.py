@@ -18,8 +18,8 @@ from mission.bench.walls.plans import DoorPlan, Maker, Occluder, RoomPlan, Site,
 
 _SHARES: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
-        "locker": (0.32, 0.39),
-        "curtain": (0.32, 0.39),
+        "locker": (0.30, 0.37),
+        "curtain": (0.30, 0.37),
         "shelf": (0.15, 0.36),
         "sofa": (0.15, 0.36),
         "screens": (0.26, 0.35),
@@ -32,7 +32,7 @@ _TALL = ("locker", "curtain")
 """They stand clear of the frame's uprights."""
 _PAIRS = ("screens", "piles")
 """One stands before each of the frame's uprights; what stands alone hides at most one of them."""
-_MORE = (0.02, 0.10)
+_MORE = (-0.03, 0.03, 0.09)
 """Width in several sizes, beyond what would hide the share if the thing touched the wall: scanners see round it [m]."""
 _MARGIN = CORNER + 0.25
 """Beside and between doors, for what reaches past their frames [m]."""
