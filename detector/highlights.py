@@ -114,7 +114,7 @@ def _candidates(
     )
     peaks = np.bincount(segments.ravel(), ((highest > coded) | (lowest == 0)).ravel(), count) == 0
     peaks[0] = False
-    minimum = parameters.highlight_min_area / parameters.pixel_size**2 / 8  # the top level is the tip of the highlight
+    minimum = parameters.min_highlight_area / parameters.pixel_size**2 / 8  # the top level is the tip of the highlight
     kept = np.where(peaks[segments], segments, 0)
     found = [p for p in regionprops(kept) if p.area >= minimum]
     found = [p for p in found if region[tuple(np.rint(p.centroid).astype(int))]]
@@ -170,7 +170,7 @@ def _flank_width(profile: NDArray, stride: float, parameters: DetectorParameters
     top = profile.max()
     start = len(profile) - 1 - int((profile[::-1] > top - PLATEAU).argmax())
     flank = profile[start:]
-    if profile[0] < top - HOLLOW or len(flank) < 9 or np.ptp(profile) < parameters.highlight_min_contrast:
+    if profile[0] < top - HOLLOW or len(flank) < 9 or np.ptp(profile) < parameters.min_highlight_contrast:
         return float("nan")
     # foot + height * exp(-r^2 / 2 width^2) is linear in foot and height: least squares for every width at once
     distances = stride * np.arange(start, len(profile))

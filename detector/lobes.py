@@ -51,7 +51,7 @@ def lobes(levels: Floats, angle: Floats, distance: float, area: float, parameter
     mirrors = angle < parameters.highlight_mirror_angle
     bridged = np.asarray(cv2.morphologyEx(levels, cv2.MORPH_CLOSE, BRIDGE), np.float32)
     for factor, gloss in product(HEIGHTS, (bridged, levels)):
-        height = 255 * parameters.gloss_min_contrast * factor
+        height = 255 * parameters.min_gloss_contrast * factor
         if not ((gloss > FOOT * height) & mirrors).any() or gloss.max() < height:
             continue
         part = cv2.morphologyEx(((gloss > FOOT * height) & ~found).view(np.uint8), cv2.MORPH_OPEN, SMALLEST)
@@ -62,7 +62,7 @@ def lobes(levels: Floats, angle: Floats, distance: float, area: float, parameter
         # a lobe cos^n over the angle is exp(-n angle^2 / 2), and the angle is the way over the distance
         kept = (agreement > SHAPE) & (2 * fall * distance**2 > SHEEN)
         size = np.bincount(inside, minlength=count)
-        kept &= size * area >= parameters.highlight_min_area
+        kept &= size * area >= parameters.min_highlight_area
         peak = np.zeros(count, np.float32)
         np.maximum.at(peak, inside, shown)
         kept &= (peak >= height) & (np.bincount(inside, shown > TOP[0] * peak[inside], count) < TOP[1] * size)

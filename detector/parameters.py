@@ -11,12 +11,12 @@ from pydantic import BaseModel, ConfigDict, Field
 class DetectorParameters(BaseModel):
     """Parameters of all stages; the defaults are the paper's wherever it gives a number."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     # Section 4: orthoimages
     pixel_size: float = Field(0.005, gt=0, le=0.1, description="side of a pixel [m]; section 4")
     max_pixels: int = Field(
-        20_000_000, gt=0, description="largest orthoimage that is accepted; ours, bounds the memory"
+        20_000_000, gt=0, le=1_000_000_000, description="largest orthoimage that is accepted; ours, bounds the memory"
     )
     slab_front: float = Field(0.20, gt=0, le=1, description="what stands out further is no wall data [m]; voxel side")
     slab_behind: float = Field(0.25, gt=0, le=1, description="how deep a closed leaf may be recessed [m]; ours")
@@ -45,24 +45,26 @@ class DetectorParameters(BaseModel):
     highlight_mirror_angle: float = Field(
         0.1, gt=0, le=1.5, description="incidence within which a flat wall mirrors a flash beside the lens [rad]; ours"
     )
-    highlight_min_area: float = Field(8e-4, gt=0, description="smallest highlight [m2]; section 7.4")
-    highlight_min_contrast: float = Field(
+    min_highlight_area: float = Field(8e-4, gt=0, le=1, description="smallest highlight [m2]; section 7.4")
+    min_highlight_contrast: float = Field(
         0.06, gt=0, le=1, description="least height of a highlight over its foot; ours"
     )
-    gloss_min_contrast: float = Field(
+    min_gloss_contrast: float = Field(
         0.035, gt=0, le=1, description="least height of a highlight over what other views see there; ours"
     )
     highlight_r2: float = Field(0.9, gt=0, le=1, description="share of variance that the Gaussian must explain; ours")
-    w1_mean: float = Field(0.0, description="mean of w1 [rad]; section 4.2")
-    w1_std: float = Field(pi / 9, gt=0, description="standard deviation of w1 [rad]; section 4.2")
-    w2_mean: float = Field(pi / 9, description="mean of w2, used on highlights [rad]; section 4.2")
-    w2_std: float = Field(pi / 6, gt=0, description="standard deviation of w2 [rad]; section 4.2")
+    w1_mean: float = Field(0.0, ge=0, le=1.6, description="mean of w1 [rad]; section 4.2")
+    w1_std: float = Field(pi / 9, gt=0, le=1.6, description="standard deviation of w1 [rad]; section 4.2")
+    w2_mean: float = Field(pi / 9, ge=0, le=1.6, description="mean of w2, used on highlights [rad]; section 4.2")
+    w2_std: float = Field(pi / 6, gt=0, le=1.6, description="standard deviation of w2 [rad]; section 4.2")
 
     # Section 6.1: wall area
     seed_size: int = Field(5, ge=2, le=25, description="side of a seed [px]; section 6.1")
     max_seeds: int = Field(1200, ge=100, le=20_000, description="seeds are thinned regularly to about this many; ours")
-    sigma_max: float = Field(0.2, gt=0, le=1, description="largest standard deviation within a seed; section 6.1")
-    depth_scale: float = Field(0.1, gt=0, description="depth [m] that counts as much as black against white; ours")
+    max_sigma: float = Field(0.2, gt=0, le=1, description="largest standard deviation within a seed; section 6.1")
+    depth_scale: float = Field(
+        0.1, gt=0, le=10, description="depth [m] that counts as much as black against white; ours"
+    )
     delta: float = Field(0.7, ge=-1, le=1, description="least silhouette of a seed that is kept; sections 6.1 and 8")
     max_clusters: int = Field(8, ge=2, le=20, description="most clusters that k-means tries; ours")
     min_silhouette: float = Field(
@@ -74,21 +76,23 @@ class DetectorParameters(BaseModel):
         "capped", description="Otsu's threshold as in section 6.2, or that one kept between noise and a cap"
     )
     colour_edge_cap: float = Field(0.02, gt=0, le=1, description="gradient per pixel that is always an edge; ours")
-    depth_edge: float = Field(0.010, gt=0, description="depth step that is always an edge [m]; ours, 3 sigma")
+    depth_edge: float = Field(0.010, gt=0, le=1, description="depth step that is always an edge [m]; ours, 3 sigma")
     alpha1: float = Field(0.5, ge=0, le=1, description="least share of the dominant colour and depth; section 6.2")
     alpha2: float = Field(0.6, ge=0, le=1, description="least support of each side by discontinuities; section 6.2")
     alpha3: float = Field(0.03, ge=0, le=1, description="largest share of wall area; section 6.2")
-    min_width: float = Field(0.5, gt=0, description="narrowest leaf [m]; ours")
-    max_width: float = Field(2.4, gt=0, description="widest doorway, of two leaves [m]; ours")
-    min_height: float = Field(1.6, gt=0, description="lowest doorway [m]; ours")
-    max_height: float = Field(2.6, gt=0, description="highest doorway [m]; ours")
+    min_width: float = Field(0.5, gt=0, le=5, description="narrowest leaf [m]; ours")
+    max_width: float = Field(2.4, gt=0, le=10, description="widest doorway, of two leaves [m]; ours")
+    min_height: float = Field(1.6, gt=0, le=5, description="lowest doorway [m]; ours")
+    max_height: float = Field(2.6, gt=0, le=10, description="highest doorway [m]; ours")
     min_visible_closed: float = Field(
         0.5, ge=0, le=1, description="least visible share of a closed door; section 7.4 has 40 % of a panel occluded"
     )
     min_visible: float = Field(
         0.35, ge=0, le=1, description="least visible share of a doorway; ours: an open leaf hides more than 40 %"
     )
-    max_protrusion: float = Field(0.06, ge=0, description="a closed leaf stands out no further than this [m]; ours")
+    max_protrusion: float = Field(
+        0.06, ge=0, le=0.2, description="a closed leaf stands out no further than this [m]; ours"
+    )
 
     faint_doors: bool = Field(
         True, description="also look for doors that nearly have the wall's colour, by edges just above the noise; ours"
@@ -101,6 +105,10 @@ class DetectorParameters(BaseModel):
     leaf_slice: Literal["all", "half-height"] = Field(
         "all", description="points for the angle: the whole leaf, or a slice at half height as in section 6.3"
     )
-    closed_angle: float = Field(0.0175, ge=0, description="a leaf below this angle is closed [rad]; ours, 1 deg")
-    max_angle: float = Field(1.92, gt=0, description="widest opening [rad]; section 6.3: 110 deg")
-    leaf_inlier: float = Field(0.012, gt=0, description="distance of an inlier from the leaf's line [m]; ours, 4 sigma")
+    closed_angle: float = Field(
+        0.0175, ge=0, le=1.6, description="a leaf below this angle is closed [rad]; ours, 1 deg"
+    )
+    max_angle: float = Field(1.92, gt=0, le=3.15, description="widest opening [rad]; section 6.3: 110 deg")
+    leaf_inlier: float = Field(
+        0.012, gt=0, le=0.2, description="distance of an inlier from the leaf's line [m]; ours, 4 sigma"
+    )

@@ -65,7 +65,7 @@ def coherent_seeds(
     inner = np.arange(side)
     patches = values[(seeds[:, 0, None] + inner)[:, :, None], (seeds[:, 1, None] + inner)[:, None, :]]
     patches = patches.reshape(len(seeds), side * side, 4)
-    coherent = (patches.std(axis=1) <= parameters.sigma_max).all(axis=1)
+    coherent = (patches.std(axis=1) <= parameters.max_sigma).all(axis=1)
     return seeds[coherent], patches.mean(axis=1)[coherent]
 
 

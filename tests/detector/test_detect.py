@@ -165,7 +165,7 @@ def test_an_unknown_parameter_is_refused() -> None:
 
 def test_the_defaults_are_the_papers() -> None:
     p = DetectorParameters()
-    assert (p.pixel_size, p.grey_levels, p.seed_size, p.sigma_max, p.delta) == (0.005, 11, 5, 0.2, 0.7)
+    assert (p.pixel_size, p.grey_levels, p.seed_size, p.max_sigma, p.delta) == (0.005, 11, 5, 0.2, 0.7)
     assert (p.alpha1, p.alpha2, p.alpha3) == (0.5, 0.6, 0.03)
 
 

@@ -25,7 +25,7 @@ def numbers(model: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, lis
             yield path + name, field.get("prefixItems") or [field["items"]]
 
 
-NUMBERS = {key: schemas for key, schemas in numbers(SCHEMA) if not key.startswith("detector.")}
+NUMBERS = dict(numbers(SCHEMA))
 FLOATS = {key: schemas for key, schemas in NUMBERS.items() if schemas[0]["type"] == "number"}
 
 

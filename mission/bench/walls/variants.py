@@ -20,7 +20,7 @@ SWEEPS: dict[str, tuple[str, float]] = {
     "alpha1": ("alpha1", 1.0),
     "alpha2": ("alpha2", 1.0),
     "alpha3": ("alpha3", 0.1),
-    "sigma": ("sigma_max", 0.5),
+    "sigma": ("max_sigma", 0.5),
 }
 """By the paper's name: the parameter, and rho of Table 6, of which 0.1 to 0.9 are tried (that of sigma is ours)."""
 
