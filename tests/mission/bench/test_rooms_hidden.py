@@ -9,6 +9,7 @@ import pytest
 
 from mission.bench.walls.finishes import WHITE
 from mission.bench.walls.fitting import is_fair, places_for
+from mission.bench.walls.glossy import SHOWS
 from mission.bench.walls.hidden import Hidden, hidden_shares, scanner_origins
 from mission.bench.walls.plans import DoorPlan, WallPlan
 from mission.bench.walls.rooms import BenchRoom, rooms
@@ -115,7 +116,7 @@ def highlights(room: BenchRoom) -> list[tuple[float, bool]]:
             world_from_scanner[:2, :2], world_from_scanner[:3, 3] = [[c, -s], [s, c]], origin
             for photo in camera.photograph(data, world_from_scanner, np.random.default_rng(0)):
                 world_from_camera = world_from_scanner @ photo.scanner_from_camera
-                rows, columns = np.nonzero(photo.true_highlights)
+                rows, columns = np.nonzero(photo.true_gloss >= SHOWS)
                 pixels = np.column_stack([columns + 0.5, rows + 0.5, np.ones(len(rows))])
                 beams = pixels @ np.linalg.inv(photo.intrinsics).T @ world_from_camera[:3, :3].T
                 for wall in room.walls:
