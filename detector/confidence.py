@@ -61,11 +61,17 @@ def measure(candidate: Candidate, scene: Scene, height: float) -> Evidence:
 
 
 def _contrast(box: Boxes, scene: Scene) -> float:
-    """Step across the faintest side of a rectangle that can be compared, of a clear one; 1 where none can."""
+    """The step that all sides of a rectangle share, of a clear one; 1 where none can be compared, as in an open door.
+
+    What is a surface of its own differs from what is round it in one way: brighter, say, or deeper. Edges that happen
+    to make a rectangle do not.
+    """
     change = steps(box, scene)
-    sizes = np.fmax(np.abs(change.colour).max(axis=1) / CLEAR_COLOUR, np.abs(change.depth) / CLEAR_DEPTH)
-    known = sizes[~np.isnan(sizes)]
-    return float(min(known.min(), 1.0)) if len(known) else 1.0
+    sizes = np.column_stack([change.colour / CLEAR_COLOUR, change.depth / CLEAR_DEPTH])
+    known = sizes[~np.isnan(sizes).any(axis=1)]
+    if len(known) == 0:
+        return 1.0
+    return float(np.clip(np.maximum(known.min(axis=0), -known.max(axis=0)).max(), 0, 1))
 
 
 def judged(doors: Sequence[Door], search: DoorSearch, scene: Scene, height: float) -> list[Door]:

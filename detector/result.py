@@ -180,7 +180,7 @@ class Evidence(NamedTuple):
     visible: float
     """Share that nothing hides."""
     contrast: float
-    """Change across the faintest of the three sides; 1 is a clear one."""
+    """Change of colour or depth that the three sides share; 1 is a clear one."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,10 +50,12 @@ def test_evidence_is_what_was_measured_on_the_rectangle() -> None:
     assert found.contrast == pytest.approx(0.51, abs=0.01)
 
 
-def test_the_contrast_is_that_of_the_faintest_side() -> None:
-    beside = scene(step=100)
-    beside.merged.colour[50:, 190:200] += np.uint8(90)  # on the right the wall is nearly as bright as the door
-    assert measure(candidate(), beside, HEIGHT).contrast == pytest.approx(10 / 25.5, abs=0.01)
+@pytest.mark.parametrize(("beside", "shared"), [(90, 10 / 25.5), (110, 0.0)])
+def test_the_contrast_is_what_all_sides_share(beside: int, shared: float) -> None:
+    # the door is brighter than the wall by 100 grey values; on its right is something as bright but for 10
+    bright = scene(step=100)
+    bright.merged.colour[50:, 190:200] += np.uint8(beside)
+    assert measure(candidate(), bright, HEIGHT).contrast == pytest.approx(shared, abs=0.01)
 
 
 @pytest.mark.parametrize("name", Evidence._fields)
