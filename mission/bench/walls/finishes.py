@@ -89,7 +89,7 @@ def wood(rng: np.random.Generator, colour: Colour, variation: float = 0.12) -> F
 
 def glossy(rng: np.random.Generator, finish: Finish) -> Finish:
     """Gloss paint, lacquer or glaze: highlights of the flash cover some 8 cm2 to 0.27 m2 of a wall (section 7.4)."""
-    spread = float(rng.uniform(0.14**4, 0.30**4))  # the area of a highlight grows like roughness^4
+    spread = float(rng.uniform(0.14**4, 0.28**4))  # the area of a highlight grows like roughness^4
     return replace(finish, specular=float(rng.uniform(0.2, 0.45)), roughness=spread**0.25)
 
 
