@@ -85,7 +85,7 @@ def _draw_merged(rec: rr.RecordingStream, entity: str, result: WallResult) -> No
         ),
     )
     doors = [door.rectangle for door in result.doors]
-    labels = [f"{door.kind}, {door.state}, {share_text(door.confidence)}" for door in result.doors]
+    labels = [f"{door.kind}, {door.state}, confidence {share_text(door.confidence)}" for door in result.doors]
     _draw_boxes(rec, f"{entity}/doors", result, doors, colours=[ACCEPTED] * len(doors), labels=labels)
 
 
