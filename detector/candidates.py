@@ -166,7 +166,7 @@ def surroundings(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
     sides = zip(strips(boxes, scene, outside=True), strips(boxes, scene, outside=False), strict=True)
     for i, (outer, inner) in enumerate(sides):
         seen = box_sums(visible, outer)
-        share = box_sums(plane, outer) / np.maximum(seen, 1)
+        share = np.minimum(box_sums(plane, outer) / np.maximum(seen, 1), 1.0)
         hidden_by_leaf = box_sums(standing_out, inner) > 0.5 * _area(inner)
         result[:, i] = np.where(seen > 0.2 * _area(outer), share, np.where(hidden_by_leaf, 0.0, 1.0))
     return result

@@ -22,6 +22,8 @@ COLOUR_ALONG = 0.155
 """The same for colour, which is noisier against the steps that matter [m]."""
 NOISE_FACTOR = 4.0
 """A gradient below this many times the wall's median is texture."""
+FAINT_LEAST = 0.004
+"""Least gradient of a faint edge per pixel, of 1: one grey value."""
 FAINT_FACTOR = 5.0
 """A gradient this many times the wall's median is an edge, if a faint one."""
 GRADIENT_STEPS = 1000
@@ -130,7 +132,7 @@ def colour_threshold(gradient: NDArray[np.float32], coloured: Mask, parameters: 
 
 def faint_threshold(gradient: NDArray[np.float32], coloured: Mask) -> float:
     """Gradient that is clearly above the noise of the wall's colour."""
-    return FAINT_FACTOR * float(np.median(gradient[coloured])) if coloured.any() else np.inf
+    return max(FAINT_LEAST, FAINT_FACTOR * float(np.median(gradient[coloured]))) if coloured.any() else np.inf
 
 
 def _above_noise(least: float, factor: float, values: NDArray[np.float32]) -> float:

@@ -71,7 +71,10 @@ def _closed_if_shut(leaf: Leaf, parameters: DetectorParameters) -> Leaf:
 
 
 def join_leaves(doors: list[Door]) -> list[Door]:
-    """Neighbouring doors of one height that share a side, as one double door; doors from left to right."""
+    """Neighbouring doors of one height that share a side, as one double door; doors from left to right.
+
+    The confidence of a double door is that of the less sure half.
+    """
     result: list[Door] = []
     for door in doors:
         before = result[-1] if result else None
@@ -79,8 +82,8 @@ def join_leaves(doors: list[Door]) -> list[Door]:
             a, b = before.rectangle, door.rectangle
             whole = Rectangle(a.left, min(a.bottom, b.bottom), b.right, (a.top + b.top) / 2)
             leaves = (*before.leaves, *door.leaves)
-            sure = min((before, door), key=lambda half: half.confidence)
-            result[-1] = Door(whole, "double", _state(leaves), leaves, sure.confidence, sure.evidence)
+            weaker = min((before, door), key=lambda half: half.confidence)
+            result[-1] = Door(whole, "double", _state(leaves), leaves, weaker.confidence, weaker.evidence)
         else:
             result.append(door)
     return result

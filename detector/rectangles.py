@@ -71,11 +71,14 @@ def find_lines(
 
 def _clear_where_visible(edges: Mask, visible: Mask, axis: int, window_px: int) -> NDArray[np.bool_]:
     """(W,) or (H,) columns or rows with a window that is hidden in part, and edge over most of what is visible."""
-    size = (1, window_px) if axis == 0 else (window_px, 1)
-    border = cv2.BORDER_CONSTANT
-    seen = cv2.boxFilter(visible.astype(np.float32), -1, size, borderType=border)
-    hits = cv2.boxFilter(edges.astype(np.float32), -1, size, borderType=border)
-    return np.asarray((hits >= CLEAR_SHARE * np.maximum(seen, LEAST_VISIBLE)).any(axis=axis))
+    window = min(window_px, edges.shape[axis])
+    size = (1, window) if axis == 0 else (window, 1)
+    within, seen, hits = (
+        cv2.boxFilter(mask.astype(np.float32), -1, size, borderType=cv2.BORDER_CONSTANT)
+        for mask in (np.ones_like(visible), visible, edges & visible)
+    )
+    partly = (seen < within - 0.5 / window) & (within > 1 - 0.5 / window)
+    return np.asarray((partly & (hits >= CLEAR_SHARE * np.maximum(seen, LEAST_VISIBLE))).any(axis=axis))
 
 
 def pairs(lines: NDArray[np.float64], shortest: float, longest: float) -> NDArray[np.int64]:

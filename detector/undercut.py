@@ -72,7 +72,7 @@ def _on_leaves(door: Door, low: NDArray[np.float32], merged: Orthoimage, height:
 
 
 def lower_edge(heights: NDArray[np.float32]) -> float | None:
-    """Height [m] from which the points of a leaf are as dense as above; None if there are too few, or it is deeper.
+    """Height [m] from which the points of a leaf are as dense as above; None if there are too few, or not within 5 cm.
 
     Args:
         heights: (N,) over the floor [m]; the floor's own points and the leaf's.
@@ -87,6 +87,8 @@ def lower_edge(heights: NDArray[np.float32]) -> float | None:
     if len(below) == 0:
         return None
     first = int(below[-1])  # from here on upwards it is leaf
+    if smooth[first + 1] < density / 2:
+        return None
     rise = smooth[first + 1] - smooth[first]
     return max(0.0, LOW[0] + BIN * (first + 0.5 + float((density / 2 - smooth[first]) / rise)))
 

@@ -126,7 +126,8 @@ def silhouettes(distances: NDArray[np.float32], assigned: NDArray[np.int32]) -> 
     numbers = np.unique(assigned)
     members = (assigned[:, None] == numbers).astype(np.float32)
     counts = members.sum(axis=0)
-    sums = distances @ members
+    # no product of matrices: its last digits depend on the number of cores
+    sums = np.stack([distances[:, assigned == number].sum(axis=1) for number in numbers], axis=1)
     own = members > 0
     a = sums[own] / np.maximum(counts[own.argmax(axis=1)] - 1, 1)
     b = np.where(own, np.inf, sums / counts).min(axis=1)

@@ -31,3 +31,8 @@ def test_a_leaf_of_too_few_points_tells_nothing() -> None:
 
 def test_an_open_doorway_without_points_above_the_floor_tells_nothing() -> None:
     assert lower_edge(np.zeros(500, np.float32)) is None
+
+
+@pytest.mark.parametrize("undercut", [0.052, 0.06, 0.08])
+def test_a_leaf_whose_lowest_part_is_hidden_tells_nothing(undercut: float) -> None:
+    assert lower_edge(heights(undercut)) is None
