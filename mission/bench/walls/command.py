@@ -51,13 +51,15 @@ def bench_walls(options: argparse.Namespace) -> int:
     try:
         config = read_config(options.config, options.set)
         categories = _categories(options)
+        cache = Path(options.cache) if options.cache else default_folder()
+        cache.mkdir(parents=True, exist_ok=True)  # now, not after minutes of scanning
         folder = make_folder(options.out, scene_name="bench-walls", first_file="result.json")
         with Workers(options.backend, options.jobs or default_jobs()) as workers, _progress(log) as progress:
             run = partial(_run, workers, progress)
             judged = judge(
                 generate(list(dict.fromkeys(options.seed)), categories, run=run),
                 variants(config, ablate=options.ablate, sweep=options.sweep),
-                cache=Path(options.cache) if options.cache else default_folder(),
+                cache=cache,
                 run=run,
             )
         report = BenchReport(judged, ablate=options.ablate, sweep=options.sweep, config=config)
