@@ -173,8 +173,8 @@ class Evidence(NamedTuple):
     """Least support of these sides."""
     one_surface: float
     """The lesser share of the dominant colour and depth, openings included."""
-    no_wall: float
-    """1 without wall area inside, 0 with a tenth or more."""
+    apart: float
+    """1 without wall area inside, 0 with a tenth or more; 1, too, for a surface that differs from the wall round it."""
     wall_round: float
     """Least share of wall along the outside of the three sides."""
     visible: float

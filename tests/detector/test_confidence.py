@@ -39,15 +39,21 @@ def candidate(**changes: object) -> Candidate:
 
 
 def test_evidence_is_what_was_measured_on_the_rectangle() -> None:
-    # a step of 13 of 255 is half of a clear one, 0.1; wall on 0.02 of the inside is a fifth of too much
+    # a step of 13 of 255 is half of a clear one, 0.1
     found = measure(candidate(), scene(step=13, hidden=0.25), HEIGHT)
     assert found.outline == pytest.approx((1.0 + 0.7 + 0.85) / 3)
     assert found.weakest_side == 0.7
     assert found.one_surface == 0.8
-    assert found.no_wall == pytest.approx(0.8)
+    assert found.apart == 1  # whatever wall area is in it: it is brighter than the wall on all sides
     assert found.wall_round == 0.95
     assert found.visible == pytest.approx(0.75, abs=0.01)
     assert found.contrast == pytest.approx(0.51, abs=0.01)
+
+
+def test_wall_inside_counts_against_what_is_like_the_wall() -> None:
+    # of 0.1, which is too much, 0.02 is a fifth
+    assert measure(candidate(), scene(step=0), HEIGHT).apart == pytest.approx(0.8)
+    assert measure(candidate(wall_share=0.4), scene(step=0), HEIGHT).apart == 0
 
 
 @pytest.mark.parametrize(("beside", "shared"), [(90, 10 / 25.5), (110, 0.0)])

@@ -134,7 +134,7 @@ def _caption(row: DoorRow) -> tuple[str, tuple[int, int, int]]:
 def _at(angle_deg: float | None, opened_fraction: float | None) -> str:
     """An angle that is worth a word, or how far a sliding door is open."""
     if opened_fraction is not None:
-        return f" at {opened_fraction:.0%}"
+        return f", {opened_fraction:.0%} open"
     return f" at {angle_deg:.1f} deg" if angle_deg and angle_deg > OPEN_DEG else ""
 
 

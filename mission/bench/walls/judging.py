@@ -166,6 +166,6 @@ def _picture(result: WallResult, truths: Sequence[DoorTruth]) -> WallPicture:
 def _label(door: Door) -> str:
     opening = f" at {np.degrees(door.opening_angle):.1f} deg" if door.opening_angle > 0 else ""
     if door.opened_fraction > 0:
-        opening = f" at {door.opened_fraction:.0%}"
+        opening = f", {door.opened_fraction:.0%} open"
     sure = confidence_of(door)
     return f"{door.kind}, {door.state}{opening}" + ("" if sure is None else f", {sure:.2f}")
