@@ -1,8 +1,8 @@
 """How sure the detector is of a door: a logistic function of what was measured on it (ours).
 
 Each piece of evidence lies in [0, 1], and more of it never counts against the door, so that a low confidence can be
-explained. The weights were fitted to 96 candidates that are doors and 97 rejected ones that are none, of seeds 1 to 3 of
-the walls benchmark; `mission.bench.walls.calibration` does that, and prints them. The confidence decides nothing.
+explained. The weights were fitted to 96 candidates that are doors and 97 rejected ones that are none, of seeds 1 to 3
+of the walls benchmark; `mission.bench.walls.calibration` does that, and prints them. The confidence decides nothing.
 """
 
 from __future__ import annotations
