@@ -41,6 +41,8 @@ CLEAR_SUPPORT = 0.8
 MAX_OVERSHOOT = 0.5
 OCCLUDER = 0.1
 """What is nearer than this to the room and does not slope is no leaf [m]: one at 6 deg, 0.95 m wide, is nearer."""
+LEAF_EDGE = 0.15
+"""A leaf seen on its edge is a strip narrower than this, handles and slope included [m]."""
 SILHOUETTE_PX = 3
 """Edges this close to what stands before the wall are its silhouette."""
 MAX_LINES = 50
@@ -73,7 +75,7 @@ def find_doors(
     edges = find_edges(merged, seen, parameters)
     floor_row = min(round((height - floor) / px), merged.depth.shape[0])
     lowest = max(1, floor_row - int(np.ceil(parameters.floor_margin / px)) - 1)
-    hidden = occluders(merged, edges)
+    hidden = occluders(merged, seen, edges)
     visible = ((seen == Visibility.DATA) | (seen == Visibility.THROUGH)) & ~hidden
     open_to_view = ((seen != Visibility.SHADOWED) & ~hidden)[:lowest]
 
@@ -112,14 +114,18 @@ def with_faint(candidates: tuple[Candidate, ...], faint: tuple[Candidate, ...]) 
     return (*accepted, *(c for c in candidates if c.rejected_by is not None))
 
 
-def occluders(merged: Orthoimage, edges: Edges) -> Mask:
+def occluders(merged: Orthoimage, seen: Image, edges: Edges) -> Mask:
     """(H, W) furniture just before the wall, and its silhouette: that is no discontinuity of the wall (figure 23).
 
-    The leaf of an open door stands out, too, but it slopes.
+    The leaf of an open door stands out, too, but it slopes, or is seen on its edge, a narrow strip beside its hole.
     """
-    nearer = (np.nan_to_num(merged.depth, nan=-np.inf) > OCCLUDER) & ~edges.sloping
+    nearer = ((np.nan_to_num(merged.depth, nan=-np.inf) > OCCLUDER) & ~edges.sloping).astype(np.uint8)
+    across = np.ones((1, 2 * round(LEAF_EDGE / 2 / merged.pixel_size) + 1), np.uint8)
+    narrow = (nearer > 0) & (cv2.morphologyEx(nearer, cv2.MORPH_OPEN, across) == 0)
+    beside_hole = cv2.dilate((seen == Visibility.THROUGH).astype(np.uint8), across) > 0
+    nearer[narrow & beside_hole] = 0
     side = 2 * SILHOUETTE_PX + 1
-    return cv2.dilate(nearer.astype(np.uint8), np.ones((side, side), np.uint8)) > 0
+    return cv2.dilate(nearer, np.ones((side, side), np.uint8)) > 0
 
 
 def judge(

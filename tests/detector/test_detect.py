@@ -196,3 +196,11 @@ def test_two_doors_with_a_pillar_of_wall_between_are_two() -> None:
     result = detect_doors(make_room(Layout(doors=specs), step_deg=STEP_DEG), COARSE)[0]
     assert [d.kind for d in result.doors] == ["single", "single"]
     assert min(min(quality(result, spec)) for spec in specs) > 0.9
+
+
+def test_a_leaf_that_is_seen_on_its_edge_is_no_furniture() -> None:
+    # at 90 deg into the room it stands out like the side of a cabinet, but beside its own hole
+    spec = DoorSpec(left=2.4, width=0.85, height=2.0, angle_deg=90, hinge="left", inward=True, recess=0.008)
+    (door,) = detect_doors(make_room(Layout(doors=[spec]), step_deg=STEP_DEG), COARSE)[0].doors
+    assert np.rad2deg(door.opening_angle) == pytest.approx(90, abs=0.5)
+    assert (door.rectangle.left, door.rectangle.right) == pytest.approx((2.4, 3.25), abs=0.02)
