@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.parameters import DetectorParameters
-from detector.result import Leaf, Rectangle
+from detector.result import Leaf, Orthoimage, Rectangle
 
 HINGE_DEPTHS = np.arange(-0.30, 0.091, 0.02)
 """Where the hinge may lie: up to a wall's thickness behind the plane, up to a frame's before it [m]."""
@@ -33,6 +33,8 @@ MAX_SLICE = 40_000
 SLICE = 0.1
 """Half height of the slice at half height [m]."""
 MIN_POINTS = 40
+CLOSED_SHARE = 0.6
+"""Share of a doorway's columns that a closed leaf fills at least."""
 
 
 class LeafFit(NamedTuple):
@@ -171,7 +173,7 @@ def _refine(
             keep = near
         if keep.sum() < MIN_POINTS:
             return None
-        origin, angle = _total_least_squares(plan[keep], angle)
+        origin, angle = total_least_squares(plan[keep], angle)
         tolerance = parameters.leaf_inlier
         origin = origin - along * ((origin - np.array(line.start)) @ along)  # radii keep counting from the hinge
     spread = radius[keep]
@@ -187,13 +189,19 @@ def _refine(
     return LeafFit(leaf, min(cover, 1.0), float(origin[1] - origin[0] * np.tan(angle)))
 
 
-def _total_least_squares(plan: NDArray, angle: float) -> tuple[NDArray, float]:
+def total_least_squares(plan: NDArray, angle: float) -> tuple[NDArray, float]:
     """Centroid and direction of the line through points (N, 2); the direction nearest to `angle` [rad]."""
     centre = plan.mean(axis=0)
     x, y = (plan - centre).T
     direction = 0.5 * np.arctan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum())
     turns = np.round((angle - direction) / np.pi)
     return centre, float(direction + turns * np.pi)
+
+
+def closed_depth(doorway: Rectangle, merged: Orthoimage, height: float, parameters: DetectorParameters) -> float | None:
+    """Depth [m] of the plane parallel to the wall that fills a doorway; None if none does."""
+    angle, depth, share = slope_in_doorway(merged.depth, doorway, height, merged.pixel_size)
+    return depth if share >= CLOSED_SHARE and abs(angle) < parameters.closed_angle else None
 
 
 def slope_in_doorway(

@@ -11,18 +11,16 @@ from numpy.typing import NDArray
 from detector.edges import Edges
 from detector.openings import Visibility
 from detector.parameters import DetectorParameters
-from detector.rectangles import box_sums, integral, pairs
+from detector.rectangles import CLEAR_SHARE, LEAST_VISIBLE, box_sums, integral, pairs
 from detector.result import Image, Mask, Orthoimage
 
 FOOT = 0.3
 """The sides of a door reach the floor; those of a panel in it do not: tested over this height [m]."""
 FOOT_SUPPORT = 0.4
+FOOT_VISIBLE = 0.3
+"""Least visible share of a foot that can refute a side."""
 VISIBLE_SHARE = 0.4
 """Share of a side over which it is visible that is enough to judge it."""
-LEAST_VISIBLE = 0.12
-"""Less of a side than this says nothing, however clear it is."""
-CLEAR_SHARE = 0.8
-"""Support that a side must have over its visible part where most of it is hidden."""
 STRIP = (0.01, 0.06)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
 FAINT_COLOUR = 0.008
@@ -33,8 +31,6 @@ WALL_ROUND, WALL_BESIDE = 0.5, 0.3
 """Least share of wall area round a surface of nearly the wall's colour, and on each side of it."""
 OVERSHOOT = 0.15
 """How far beyond its corners the outline of a door must have ended [m]."""
-SAMPLED_PX = 6
-"""Every so many pixels are enough for the shares of a rectangle."""
 SAME_COLOUR = 0.02
 """Colours closer than this in every channel are the same, of 1."""
 SAME_DEPTH = 0.006
@@ -112,27 +108,27 @@ def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> 
         open_to_view = scene.sums(cv2.dilate(scene.visible.astype(np.uint8), shape) > 0)
         if axis == 1:
             for i, column in ((0, left), (2, right)):
-                result[:, i] = _share(hits, open_to_view, np.stack([top, column, lowest, column + 1], axis=1))
+                result[:, i] = _support(
+                    *_shares(hits, open_to_view, np.stack([top, column, lowest, column + 1], axis=1))
+                )
                 ends = np.stack([lowest - foot, column, lowest, column + 1], axis=1)
-                feet[:, i // 2] = _foot_share(hits, open_to_view, ends)
+                shares, seen = _shares(hits, open_to_view, ends)
+                feet[:, i // 2] = np.where(seen >= FOOT_VISIBLE, shares, 1.0)
         else:
-            result[:, 1] = _share(hits, open_to_view, np.stack([top, left, top + 1, right + 1], axis=1))
+            result[:, 1] = _support(*_shares(hits, open_to_view, np.stack([top, left, top + 1, right + 1], axis=1)))
     return result, feet
 
 
-def _share(hits: NDArray, visible: NDArray, boxes: NDArray) -> NDArray:
-    """Hits per visible pixel of each box, 0 where too little of it is visible."""
+def _shares(hits: NDArray, visible: NDArray, boxes: NDArray) -> tuple[NDArray, NDArray]:
+    """Hits per visible pixel of each box, and the share of it that is visible."""
     seen = box_sums(visible, boxes)
-    shares = np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0)
-    visible_share = seen / _area(boxes)
-    clear = (visible_share >= LEAST_VISIBLE) & (shares >= CLEAR_SHARE)
-    return np.where((visible_share >= VISIBLE_SHARE) | clear, shares, 0.0)
+    return np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0), seen / _area(boxes)
 
 
-def _foot_share(hits: NDArray, visible: NDArray, boxes: NDArray) -> NDArray:
-    """Hits per visible pixel of each box; 1 where too little of it is visible."""
-    seen = box_sums(visible, boxes)
-    return np.where(seen >= 0.3 * _area(boxes), np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0), 1.0)
+def _support(shares: NDArray, visible: NDArray) -> NDArray:
+    """Support of sides: their shares, 0 where too little of them is visible."""
+    clear = (visible >= LEAST_VISIBLE) & (shares >= CLEAR_SHARE)
+    return np.where((visible >= VISIBLE_SHARE) | clear, shares, 0.0)
 
 
 def inner_shares(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]:
@@ -255,60 +251,3 @@ def overshoot(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
         (level, [top, right + clear, top + 1, right + clear + reach]),
     )
     return np.max([box_sums(sums, np.stack(box, axis=1)) / reach for sums, box in beyond], axis=0)
-
-
-@dataclass(frozen=True)
-class Dominance:
-    """Condition 1 on one rectangle."""
-
-    colour_share: float
-    """Visible share that has the dominant colour or is looked through: a semi-open door is a leaf and an opening."""
-    depth_share: float
-    """Visible share that lies on the dominant plane or is looked through."""
-    depth: float
-    """Depth of the dominant plane at that side of the rectangle where it is less [m]; NaN without data."""
-
-
-def dominance(box: Boxes, scene: Scene) -> Dominance:
-    """Dominant colour and depth of one rectangle; the depth may slope along u, as that of a semi-open leaf does."""
-    cut = np.s_[
-        int(np.ceil(box.top[0] + 0.5)) : scene.lowest_row : SAMPLED_PX,
-        int(np.ceil(box.left[0] + 0.5)) : int(np.floor(box.right[0] + 0.5)) : SAMPLED_PX,
-    ]
-    seen = scene.seen[cut]
-    data = (seen == Visibility.DATA) & scene.visible[cut]
-    depth = np.where(data, scene.merged.depth[cut], np.float32(np.nan))
-    through = float((seen == Visibility.THROUGH).sum())
-    total = max(data.sum() + through, 1.0)
-    if data.sum() < 10:
-        return Dominance(through / total, through / total, float("nan"))
-    plane = _plane(depth, data)
-    on_plane = data & (np.abs(depth - plane[None, :]) < 0.02)
-    coloured = data & scene.merged.coloured[cut]
-    colour_share = float(data.sum())
-    if coloured.any():
-        colour_share *= _dominant_colour(scene.merged.colour[cut][coloured])
-    depth_share = (through + float(on_plane.sum())) / total
-    return Dominance((through + colour_share) / total, depth_share, float(min(plane[0], plane[-1])))
-
-
-def _plane(depth: NDArray, data: Mask) -> NDArray[np.float64]:
-    """(W,) depth of the dominant plane in each column: a robust line through the medians of the columns."""
-    columns = np.flatnonzero(data.sum(axis=0) >= 0.2 * data.shape[0])
-    if len(columns) < 5:
-        return np.full(depth.shape[1], np.median(depth[data]), np.float64)
-    medians = np.nanmedian(depth[:, columns], axis=0)
-    i, j = np.triu_indices(len(columns), max(1, len(columns) // 6))
-    slope = np.median((medians[j] - medians[i]) / (columns[j] - columns[i]))
-    return np.arange(depth.shape[1]) * slope + np.median(medians - slope * columns)
-
-
-def _dominant_colour(colours: Image) -> float:
-    """Share of the colours that are like the most frequent one."""
-    values = colours.astype(np.float32) / 255
-    bins = (values * 12).astype(np.int64) @ np.array([169, 13, 1])
-    centre = values[bins == np.bincount(bins).argmax()].mean(axis=0)
-    for _ in range(3):
-        like = np.abs(values - centre).max(axis=1) < 0.12
-        centre = values[like].mean(axis=0)
-    return float(like.mean())

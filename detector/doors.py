@@ -12,9 +12,7 @@ from detector.candidates import (
     FOOT_SUPPORT,
     OVERSHOOT,
     Boxes,
-    Dominance,
     Scene,
-    dominance,
     door_boxes,
     inner_shares,
     overshoot,
@@ -22,6 +20,7 @@ from detector.candidates import (
     steps,
     surroundings,
 )
+from detector.dominance import Dominance, dominance
 from detector.edges import Edges, find_edges
 from detector.openings import Visibility
 from detector.parameters import DetectorParameters
@@ -134,7 +133,7 @@ def judge(
     """The rectangles with the shares that the conditions look at, and the first condition that each fails.
 
     Args:
-        faint: Whether the outline is of faint edges, too: then it must stand alone.
+        faint: Whether the outline is of faint edges, too: then it must stand alone, and nobody asks what failed.
     """
     if len(boxes) == 0:
         return ()
@@ -156,7 +155,7 @@ def judge(
     survivors = np.flatnonzero(reasons == None)  # noqa: E711 - elementwise
     survivors = survivors[np.argsort(-support[survivors].sum(axis=1), kind="stable")][:JUDGED]
     rejected = np.flatnonzero(reasons != None)  # noqa: E711 - elementwise
-    rejected = rejected[np.argsort(-support[rejected].sum(axis=1), kind="stable")][:SHOWN]
+    rejected = rejected[np.argsort(-support[rejected].sum(axis=1), kind="stable")][: 0 if faint else SHOWN]
     candidates = []
     for i in [*survivors, *rejected]:
         box = boxes[np.array([i])]

@@ -132,7 +132,7 @@ def colour_threshold(gradient: NDArray[np.float32], coloured: Mask, parameters: 
 
 def faint_threshold(gradient: NDArray[np.float32], coloured: Mask) -> float:
     """Gradient that is clearly above the noise of the wall's colour."""
-    return max(FAINT_LEAST, FAINT_FACTOR * float(np.median(gradient[coloured]))) if coloured.any() else np.inf
+    return _above_noise(FAINT_LEAST, FAINT_FACTOR, gradient[coloured]) if coloured.any() else np.inf
 
 
 def _above_noise(least: float, factor: float, values: NDArray[np.float32]) -> float:

@@ -7,15 +7,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.angle import fit_leaf, slope_in_doorway
+from detector.angle import closed_depth, fit_leaf
 from detector.parameters import DetectorParameters
 from detector.result import Door, Image, Leaf, Orthoimage, Rectangle
 from detector.sliding import find_slide
 
 MAX_LEAF = 1.3
 """Widest single leaf [m]; wider doorways have two."""
-CLOSED_SHARE = 0.6
-"""Share of a doorway's columns that a closed leaf fills at least."""
 RIGHT_ANGLE = np.deg2rad(90.0)
 NO_POINTS = np.zeros((0, 2), np.float32)
 
@@ -45,7 +43,7 @@ def describe_door(
             return Door(slide.doorway, "single", "open", (missing,))
         if not _open_leaf(_double(slide.doorway, merged, points, height, parameters)):
             return Door(slide.doorway, "sliding", "semi-open", (closed_leaf(slide.way),))
-    if _is_closed(doorway, merged, height, parameters):
+    if closed_depth(doorway, merged, height, parameters) is not None:
         if doorway.width > MAX_LEAF:
             return Door(doorway, "double", "closed", (closed_leaf(), closed_leaf()))
         return Door(doorway, "single", "closed", (closed_leaf(),))
@@ -96,12 +94,6 @@ def _is_pair(a: Door, b: Door) -> bool:
     return abs(gap) < 0.04 and level and a.kind == b.kind == "single"
 
 
-def _is_closed(doorway: Rectangle, merged: Orthoimage, height: float, parameters: DetectorParameters) -> bool:
-    """Whether a plane parallel to the wall fills the doorway."""
-    angle, _, share = slope_in_doorway(merged.depth, doorway, height, merged.pixel_size)
-    return share >= CLOSED_SHARE and abs(angle) < parameters.closed_angle
-
-
 def _open_leaf(leaves: tuple[Leaf, ...] | None) -> bool:
     """Whether there is a leaf that has turned."""
     return leaves is not None and any(leaf.opening_angle > 0 for leaf in leaves)
@@ -119,7 +111,7 @@ def _double(
     for side in sides:
         low, high = (doorway.left, middle) if side == "left" else (middle, doorway.right)
         half = Rectangle(low, doorway.bottom, high, doorway.top)
-        if _is_closed(half, merged, height, parameters):
+        if closed_depth(half, merged, height, parameters) is not None:
             leaves.append(closed_leaf())
             continue
         fit = fit_leaf(points, half, side, parameters)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.angle import slope_in_doorway
+from detector.angle import closed_depth
 from detector.candidates import Scene
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, Rectangle
@@ -27,8 +27,6 @@ STANDS_OUT = 0.03
 """A frame's face lies this close to the wall's [m]; a leaf that is nearer to the room is none."""
 OPEN_SHARE = 0.5
 """A doorway in which less than this share is in the wall's face has an open or a recessed leaf."""
-FILLED = 0.6
-"""Share of a doorway's columns that a closed leaf fills at least."""
 SHALLOW = 0.06
 """A leaf less deep than this is seen up to its edges [m]."""
 HALF_GAP = 0.0015
@@ -71,8 +69,8 @@ def _is_shallow(rectangle: Rectangle, merged: Orthoimage, height: float, paramet
 
     Beams to such a leaf cross the face's plane within its outline, the lower the deeper it is.
     """
-    angle, depth, share = slope_in_doorway(merged.depth, rectangle, height, merged.pixel_size)
-    return share >= FILLED and abs(angle) < parameters.closed_angle and abs(depth) < SHALLOW
+    depth = closed_depth(rectangle, merged, height, parameters)
+    return depth is not None and abs(depth) < SHALLOW
 
 
 def _settled(

@@ -13,9 +13,9 @@ TOLERANCE_PX = 1
 SEPARATION_PX = 3
 """Lines closer than this are one."""
 LEAST_VISIBLE = 0.12
-"""Least share of its window over which a line must be visible: 0.2 m of a side of 1.6 m."""
+"""Less than this share of a line or a side says nothing, however clear it is: 0.2 m of a side of 1.6 m."""
 CLEAR_SHARE = 0.8
-"""Share of the visible part that a line covers at least, where furniture hides the rest."""
+"""Share of its visible part that a line or a side is an edge over at least, where furniture hides the rest."""
 
 
 def lateral_histogram(edges: Mask, axis: int, window_px: int) -> NDArray[np.float32]:
@@ -27,11 +27,15 @@ def lateral_histogram(edges: Mask, axis: int, window_px: int) -> NDArray[np.floa
     Returns:
         (W,) or (H,) shares in [0, 1].
     """
-    image = edges.astype(np.float32)
-    window = min(window_px, image.shape[axis])
+    return _window_shares(edges, axis, window_px).max(axis=axis)
+
+
+def _window_shares(mask: Mask, axis: int, window_px: int) -> NDArray[np.float32]:
+    """(H, W) share of a mask in the window round each pixel, along the columns (axis 0) or rows (axis 1)."""
+    window = min(window_px, mask.shape[axis])
     size = (1, window) if axis == 0 else (window, 1)  # OpenCV's order is width, height
-    shares = cv2.boxFilter(image, -1, size, borderType=cv2.BORDER_CONSTANT)
-    return shares.max(axis=axis)
+    shares = cv2.boxFilter(mask.astype(np.float32), -1, size, borderType=cv2.BORDER_CONSTANT)
+    return np.asarray(shares, np.float32)
 
 
 def find_lines(
@@ -71,13 +75,11 @@ def find_lines(
 
 def _clear_where_visible(edges: Mask, visible: Mask, axis: int, window_px: int) -> NDArray[np.bool_]:
     """(W,) or (H,) columns or rows with a window that is hidden in part, and edge over most of what is visible."""
-    window = min(window_px, edges.shape[axis])
-    size = (1, window) if axis == 0 else (window, 1)
     within, seen, hits = (
-        cv2.boxFilter(mask.astype(np.float32), -1, size, borderType=cv2.BORDER_CONSTANT)
-        for mask in (np.ones_like(visible), visible, edges & visible)
+        _window_shares(mask, axis, window_px) for mask in (np.ones_like(visible), visible, edges & visible)
     )
-    partly = (seen < within - 0.5 / window) & (within > 1 - 0.5 / window)
+    half_a_pixel = 0.5 / min(window_px, edges.shape[axis])
+    partly = (seen < within - half_a_pixel) & (within > 1 - half_a_pixel)
     return np.asarray((partly & (hits >= CLEAR_SHARE * np.maximum(seen, LEAST_VISIBLE))).any(axis=axis))
 
 

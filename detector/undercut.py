@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.angle import slope_in_doorway
+from detector.angle import slope_in_doorway, total_least_squares
 from detector.orthoimage import LOW
 from detector.parameters import DetectorParameters
 from detector.result import Door, Orthoimage
@@ -60,9 +60,7 @@ def _on_leaves(door: Door, low: NDArray[np.float32], merged: Orthoimage, height:
     inner = (u > doorway.left + BESIDE) & (u < doorway.right - BESIDE)
     for leaf in door.leaves:
         if len(leaf.points):
-            centre = leaf.points.mean(axis=0, dtype=np.float64)
-            x, y = (leaf.points - centre).T.astype(np.float64)
-            direction = 0.5 * np.arctan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum())
+            centre, direction = total_least_squares(leaf.points.astype(np.float64), 0.0)
             away = (depth - centre[1]) * np.cos(direction) - (u - centre[0]) * np.sin(direction)
         else:
             angle, offset, _ = slope_in_doorway(merged.depth, doorway, height, merged.pixel_size)
