@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -17,8 +18,11 @@ from detector.result import Image, Mask, Orthoimage
 FOOT = 0.3
 """The sides of a door reach the floor; those of a panel in it do not: tested over this height [m]."""
 FOOT_SUPPORT = 0.4
-FOOT_VISIBLE = 0.3
-"""Least visible share of a foot that can refute a side."""
+END_VISIBLE = 0.3
+"""Least visible share of a foot or corner that can refute a side."""
+CORNER = 0.06
+"""The top of a door reaches its corners; that of a panel in it does not: tested over this width [m]."""
+CORNER_SUPPORT = 0.4
 VISIBLE_SHARE = 0.4
 """Share of a side over which it is visible that is enough to judge it."""
 STRIP = (0.01, 0.06)
@@ -29,6 +33,10 @@ FAINT_DEPTH = 0.0012
 """Least difference of depth on all sides that sets a surface apart [m]: 0.1 mm is noise."""
 WALL_ROUND, WALL_BESIDE = 0.5, 0.3
 """Least share of wall area round a surface of nearly the wall's colour, and on each side of it."""
+BAND = 0.05
+"""Width of the upright bands that boards are told by [m]."""
+UNLIKE = 4.0
+"""How many times as much boards differ as the colour along each of them; tiles differ as much along a column."""
 OVERSHOOT = 0.15
 """How far beyond its corners the outline of a door must have ended [m]."""
 SAME_COLOUR = 0.02
@@ -91,36 +99,43 @@ def door_boxes(
     return Boxes(vertical[chosen[:, 0]], vertical[chosen[:, 1]], tops[top.ravel()])
 
 
-def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> tuple[NDArray, NDArray]:
-    """Condition 2: share of the left, top, right and bottom sides on a discontinuity, (N, 4); and of the feet, (N, 2).
+def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> tuple[NDArray, NDArray, NDArray]:
+    """Condition 2: share of the left, top, right and bottom sides on a discontinuity, (N, 4).
 
     Shares are of the visible length; what furniture hides can neither support nor refute. Where most of a side is
     hidden, the rest must be clear. The bottom is the floor.
+
+    Returns:
+        The support, the same of the left and right foot, (N, 2), and of the left and right end of the top, (N, 2).
     """
-    result = np.ones((len(boxes), 4))
-    feet = np.ones((len(boxes), 2))
-    foot = max(1, round(FOOT / scene.merged.pixel_size))
+    foot, corner = (max(1, round(length / scene.merged.pixel_size)) for length in (FOOT, CORNER))
     top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
     lowest = np.full(len(boxes), scene.lowest_row)
-    for axis, mask in ((1, scene.edges.upright), (0, scene.edges.level)):
-        shape = np.ones((1, 3) if axis == 1 else (3, 1), np.uint8)
-        hits = scene.sums(cv2.dilate(mask.astype(np.uint8), shape) > 0)
-        open_to_view = scene.sums(cv2.dilate(scene.visible.astype(np.uint8), shape) > 0)
-        if axis == 1:
-            for i, column in ((0, left), (2, right)):
-                result[:, i] = _support(
-                    *_shares(hits, open_to_view, np.stack([top, column, lowest, column + 1], axis=1))
-                )
-                ends = np.stack([lowest - foot, column, lowest, column + 1], axis=1)
-                shares, seen = _shares(hits, open_to_view, ends)
-                feet[:, i // 2] = np.where(seen >= FOOT_VISIBLE, shares, 1.0)
-        else:
-            result[:, 1] = _support(*_shares(hits, open_to_view, np.stack([top, left, top + 1, right + 1], axis=1)))
-    return result, feet
+    upright = _edges_and_view(scene.edges.upright, scene, (1, 3))
+    level = _edges_and_view(scene.edges.level, scene, (3, 1))
+    sides = [_shares(*upright, [top, x, lowest, x + 1]) for x in (left, right)]
+    above = _shares(*level, [top, left, top + 1, right + 1])
+    feet = [_shares(*upright, [lowest - foot, x, lowest, x + 1]) for x in (left, right)]
+    ends = [_shares(*level, [top, x, top + 1, x + corner + 1]) for x in (left, right - corner)]
+    supports = [_support(*sides[0]), _support(*above), _support(*sides[1]), np.ones(len(boxes))]
+    return np.stack(supports, axis=1), _end_support(feet), _end_support(ends)
 
 
-def _shares(hits: NDArray, visible: NDArray, boxes: NDArray) -> tuple[NDArray, NDArray]:
-    """Hits per visible pixel of each box, and the share of it that is visible."""
+def _edges_and_view(edges: Mask, scene: Scene, across: tuple[int, int]) -> tuple[NDArray, NDArray]:
+    """Integral images of the edges and of what is visible, both a pixel wider across the sides."""
+    shape = np.ones(across, np.uint8)
+    hits, visible = (scene.sums(cv2.dilate(mask.astype(np.uint8), shape) > 0) for mask in (edges, scene.visible))
+    return hits, visible
+
+
+def _end_support(shares: Sequence[tuple[NDArray, NDArray]]) -> NDArray:
+    """(N, 2) shares of both ends; 1 where too little of one is visible."""
+    return np.stack([np.where(seen >= END_VISIBLE, share, 1.0) for share, seen in shares], axis=1)
+
+
+def _shares(hits: NDArray, visible: NDArray, spans: Sequence[NDArray]) -> tuple[NDArray, NDArray]:
+    """Hits per visible pixel of each span from top, left to bottom, right, and the share of it that is visible."""
+    boxes = np.stack(spans, axis=1)
     seen = box_sums(visible, boxes)
     return np.minimum(box_sums(hits, boxes) / np.maximum(seen, 1), 1.0), seen / _area(boxes)
 
@@ -218,6 +233,35 @@ class Steps:
         return len(values) >= 2 and bool(((values >= 1).all(axis=0) | (values <= -1).all(axis=0)).any())
 
 
+def boarded(box: Boxes, scene: Scene) -> bool:
+    """Whether the colour within one rectangle changes from board to board, and not along them.
+
+    It changes across the sides by chance then.
+    """
+    band = round(BAND / scene.merged.pixel_size)
+    rows = slice(int(box.top[0]) + band, scene.lowest_row)
+    columns = slice(int(box.left[0]) + band, int(box.right[0]) - band)
+    known = scene.merged.coloured[rows, columns] & scene.visible[rows, columns]
+    if not known.any():
+        return False
+    size = max(1, known.shape[1] // band), max(1, known.shape[0] // band)
+    weight, colour = (
+        cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+        for image in (
+            known.astype(np.float32),
+            np.where(known[..., None], scene.merged.colour[rows, columns], 0) / 255.0,
+        )
+    )
+    colour = np.where(weight[..., None] > 0.5, colour / np.maximum(weight, 0.5)[..., None], np.nan)
+    with_data = np.isfinite(colour).any(axis=(0, 2))
+    if with_data.sum() < 3:
+        return False
+    boards = np.nanmedian(colour[:, with_data], axis=0)
+    across = boards.std(axis=0).max()
+    along = np.nanmedian(np.abs(colour[:, with_data] - boards), axis=(0, 1)).max()
+    return bool(across > max(FAINT_COLOUR, UNLIKE * along))
+
+
 def steps(box: Boxes, scene: Scene) -> Steps:
     """What changes across the sides of one rectangle, by medians over strips."""
     inner, outer = strips(box, scene, outside=False), strips(box, scene, outside=True)
@@ -234,20 +278,21 @@ def steps(box: Boxes, scene: Scene) -> Steps:
     return Steps(colour, depth, wall)
 
 
-def overshoot(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
-    """(N,) largest share of edges where the left, top and right sides are drawn out beyond the upper corners.
+def overshoot(boxes: Boxes, scene: Scene) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(N,) largest shares of edges where the upright sides, and where the top, are drawn out beyond the upper corners.
 
-    The lines of tiles and planks go on there; the outline of a door ends.
+    The lines of tiles and planks go on there, if faintly; the outline of a door ends.
     """
     reach = round(OVERSHOOT / scene.merged.pixel_size)
     top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
-    upright = scene.sums(cv2.dilate(scene.edges.upright.astype(np.uint8), np.ones((1, 3), np.uint8)) > 0)
-    level = scene.sums(cv2.dilate(scene.edges.level.astype(np.uint8), np.ones((3, 1), np.uint8)) > 0)
+    upright = scene.sums(cv2.dilate(scene.edges.faint_upright.astype(np.uint8), np.ones((1, 3), np.uint8)) > 0)
+    level = scene.sums(cv2.dilate(scene.edges.faint_level.astype(np.uint8), np.ones((3, 1), np.uint8)) > 0)
     clear = 4  # the corners themselves are round
-    beyond = (
-        (upright, [top - clear - reach, left, top - clear, left + 1]),
-        (upright, [top - clear - reach, right, top - clear, right + 1]),
-        (level, [top, left - clear - reach, top + 1, left - clear]),
-        (level, [top, right + clear, top + 1, right + clear + reach]),
+    above = [[top - clear - reach, x, top - clear, x + 1] for x in (left, right)]
+    beside = [[top, left - clear - reach, top + 1, left - clear], [top, right + clear, top + 1, right + clear + reach]]
+    shares = (
+        [box_sums(sums, np.stack(box, axis=1)) / reach for box in beyond]
+        for sums, beyond in ((upright, above), (level, beside))
     )
-    return np.max([box_sums(sums, np.stack(box, axis=1)) / reach for sums, box in beyond], axis=0)
+    uprights, levels = (np.max(pair, axis=0) for pair in shares)
+    return uprights, levels

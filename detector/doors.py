@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.candidates import (
+    CORNER_SUPPORT,
     FOOT_SUPPORT,
     OVERSHOOT,
     Boxes,
     Scene,
+    boarded,
     door_boxes,
     inner_shares,
     overshoot,
@@ -26,7 +28,7 @@ from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.rectangles import find_lines
 from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rectangle, WallArea
-from detector.selection import covers, smallest
+from detector.selection import covers, frames, smallest
 from detector.sill import hangs
 
 LINE_SHARE = 0.45
@@ -93,7 +95,8 @@ def find_doors(
     candidates = judge(boxes, scene, height, floor, parameters)
     if parameters.faint_doors:
         fainter, more, _ = search(edges.faint_upright, edges.faint_level)
-        candidates = with_faint(candidates, judge(more, fainter, height, floor, parameters, faint=True))
+        candidates += fainter_doors(judge(more, fainter, height, floor, parameters, faint=True), candidates)
+    candidates = smallest(candidates)
     result = DoorSearch(
         colour_edges=edges.colour,
         depth_edges=edges.depth,
@@ -105,12 +108,15 @@ def find_doors(
     return result, scene
 
 
-def with_faint(candidates: tuple[Candidate, ...], faint: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
-    """The candidates with those doors of faint outline that claim no piece of wall of another, accepted ones first."""
-    accepted = [c for c in candidates if c.rejected_by is None]
-    accepted += [c for c in faint if c.rejected_by is None and not any(covers(c, a) for a in accepted)]
-    accepted.sort(key=lambda c: c.rectangle.left)
-    return (*accepted, *(c for c in candidates if c.rejected_by is not None))
+def fainter_doors(faint: tuple[Candidate, ...], clear: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+    """Those of faint outline that claim no piece of wall of one of clear outline, unless this is their frame."""
+    doors = [c for c in clear if c.rejected_by is None]
+    kept = []
+    for candidate in faint:
+        round_it = [d for d in doors if covers(candidate, d)]
+        if candidate.rejected_by is None and (not round_it or any(frames(d, candidate) for d in round_it)):
+            kept.append(candidate)
+    return tuple(kept)
 
 
 def occluders(merged: Orthoimage, seen: Image, edges: Edges) -> Mask:
@@ -137,14 +143,15 @@ def judge(
     """
     if len(boxes) == 0:
         return ()
-    support, feet = side_support(boxes, scene, parameters)
+    support, feet, corners = side_support(boxes, scene, parameters)
     wall, visible, through = inner_shares(boxes, scene)
     around = surroundings(boxes, scene)
-    alone = _stand_alone(boxes, support, feet, scene)
+    alone = _stand_alone(boxes, support, feet, wall > parameters.alpha3, scene)
     least_visible = np.where(through < OPEN_SHARE, parameters.min_visible_closed, parameters.min_visible)
     reasons = np.full(len(boxes), None, object)
     checks = (
         ("door frame occlusion", support.min(axis=1) < parameters.alpha2),
+        ("corners", corners.min(axis=1) < CORNER_SUPPORT),
         ("location consistency", ((wall > parameters.alpha3) | faint) & ~alone),
         ("panel occlusion", visible < least_visible),
         ("floor", feet.min(axis=1) < FOOT_SUPPORT),
@@ -173,22 +180,28 @@ def judge(
                 surroundings=float(around[i].min()),
             )
         )
-    return smallest(candidates)
+    return tuple(candidates)
 
 
-def _stand_alone(boxes: Boxes, support: NDArray, feet: NDArray, scene: Scene) -> NDArray[np.bool_]:
+def _stand_alone(
+    boxes: Boxes, support: NDArray, feet: NDArray, in_wall: NDArray[np.bool_], scene: Scene
+) -> NDArray[np.bool_]:
     """(N,) rectangles whose outline cuts them out of the wall, even if their colour is the wall's (ours).
 
     The wall area of section 6.1 takes in every door of nearly the wall's colour and depth. Such a door still has an
     unbroken outline that ends at its corners, and the same small step on all its sides.
+
+    Args:
+        in_wall: (N,) whether they hold wall area, so that their surface must be told from it.
     """
     closed = (support.min(axis=1) > CLEAR_SUPPORT) & (feet.min(axis=1) > CLEAR_SUPPORT)
     closed &= boxes.top * scene.merged.pixel_size > OVERSHOOT  # a plank goes up to the ceiling
+    closed[closed] = overshoot(boxes[closed], scene)[1] < MAX_OVERSHOOT
     for i in np.flatnonzero(closed)[np.argsort(-support[closed].sum(axis=1), kind="stable")][JUDGED:]:
         closed[i] = False
-    closed[closed] = overshoot(boxes[closed], scene) < MAX_OVERSHOOT
-    for i in np.flatnonzero(closed):
-        closed[i] = steps(boxes[np.array([i])], scene).agree()
+    for i in np.flatnonzero(closed & in_wall):
+        box = boxes[np.array([i])]
+        closed[i] = steps(box, scene).agree() or boarded(box, scene)
     return closed
 
 

@@ -68,7 +68,6 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
     gradient = np.where(merged.coloured, di_zenzo(e, f, g), np.float32(0))
     threshold = colour_threshold(gradient, merged.coloured, parameters)
     colour = gradient > threshold
-    faint = gradient > min(threshold, faint_threshold(gradient, merged.coloured))
     across = e >= g
     relief = depth_edges(merged.depth, seen, merged.pixel_size, parameters)
     steps_across, steps_along = relief.edges & relief.across, relief.edges & ~relief.across
@@ -78,8 +77,8 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
         upright=(colour & across) | steps_across,
         level=(colour & ~across) | steps_along,
         sloping=relief.sloping,
-        faint_upright=(faint & across) | steps_across,
-        faint_level=(faint & ~across) | steps_along,
+        faint_upright=_faint(e, merged.coloured, threshold) | steps_across,
+        faint_level=_faint(g, merged.coloured, threshold) | steps_along,
     )
 
 
@@ -130,9 +129,15 @@ def colour_threshold(gradient: NDArray[np.float32], coloured: Mask, parameters: 
     return _above_noise(min(otsu, parameters.colour_edge_cap), NOISE_FACTOR, values)
 
 
-def faint_threshold(gradient: NDArray[np.float32], coloured: Mask) -> float:
-    """Gradient that is clearly above the noise of the wall's colour."""
-    return _above_noise(FAINT_LEAST, FAINT_FACTOR, gradient[coloured]) if coloured.any() else np.inf
+def _faint(square: NDArray[np.float32], coloured: Mask, strong: float) -> Mask:
+    """(H, W) where the colour changes clearly above its noise in one direction: grain and boards have but one.
+
+    Args:
+        square: (H, W) squared rate of change in that direction.
+        strong: Rate that is always an edge.
+    """
+    rate = np.where(coloured, np.sqrt(square), np.float32(0))
+    return rate > min(strong, _above_noise(FAINT_LEAST, FAINT_FACTOR, rate[coloured])) if coloured.any() else coloured
 
 
 def _above_noise(least: float, factor: float, values: NDArray[np.float32]) -> float:

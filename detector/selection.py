@@ -21,6 +21,10 @@ SUPPORT_SLACK = 0.06
 """Sums of support that differ by less do not tell which of two lines is the side."""
 MOULDING = 0.25
 """Mouldings lie this close to the sides of their leaf [m]."""
+FRAME = (0.02, 0.15)
+"""Least and largest width of a frame [m]."""
+UNEVEN = 0.04
+"""The sides of a frame are as wide but for this [m]: lines lie at either border of what they are."""
 DECORATION = 0.2
 """A rectangle whose weakest side has this much less support than that of the one round it is part of its decoration."""
 
@@ -45,9 +49,9 @@ def smallest(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     for candidate in accepted:
         if any(covers(candidate, k) for k in kept):
             continue
-        alike = [c for c in accepted if id(c) not in taken and _alike(c.rectangle, candidate.rectangle)]
-        taken.update(id(c) for c in alike)
-        kept.append(_best_reading(alike))
+        readings = [c for c in accepted if id(c) not in taken and _alike(c.rectangle, candidate.rectangle)]
+        taken.update(id(c) for c in readings)
+        kept.append(_best_reading(readings))
     kept.sort(key=lambda c: c.rectangle.left)
     losers = [replace(c, rejected_by="minimum size") for c in fulfilled if not any(c is k for k in kept)]
     return (*kept, *losers, *(c for c in candidates if c.rejected_by is not None))
@@ -58,12 +62,12 @@ def _alike(a: Rectangle, b: Rectangle) -> bool:
     return max(abs(a.left - b.left), abs(a.right - b.right), abs(a.top - b.top)) < ALIKE
 
 
-def _best_reading(alike: Sequence[Candidate]) -> Candidate:
+def _best_reading(readings: Sequence[Candidate]) -> Candidate:
     """The smallest of those readings of one door that are set in wall and supported as well as any."""
-    wall = max(c.surroundings for c in alike)
-    alike = [c for c in alike if c.surroundings > wall - SET_SLACK]
-    support = max(sum(c.side_support) for c in alike)
-    return min((c for c in alike if sum(c.side_support) > support - SUPPORT_SLACK), key=lambda c: c.rectangle.area)
+    wall = max(c.surroundings for c in readings)
+    readings = [c for c in readings if c.surroundings > wall - SET_SLACK]
+    support = max(sum(c.side_support) for c in readings)
+    return min((c for c in readings if sum(c.side_support) > support - SUPPORT_SLACK), key=lambda c: c.rectangle.area)
 
 
 def _is_leaf_of(part: Candidate, all_of_it: Candidate) -> bool:
@@ -91,6 +95,13 @@ def _decorates(inner: Candidate, outer: Candidate) -> bool:
     margins = (a.left - b.left, b.right - a.right, b.top - a.top)
     nested = min(margins) > -ALIKE and ALIKE < max(margins) < MOULDING
     return nested and min(inner.side_support) < min(outer.side_support) - DECORATION
+
+
+def frames(outer: Candidate, inner: Candidate) -> bool:
+    """Whether one rectangle is the outline of the frame of another: as wide above as on both sides."""
+    a, b = outer.rectangle, inner.rectangle
+    widths = (b.left - a.left, a.right - b.right, a.top - b.top)
+    return FRAME[0] < min(widths) and max(widths) < FRAME[1] and max(widths) - min(widths) < UNEVEN
 
 
 def covers(a: Candidate, b: Candidate) -> bool:
