@@ -166,10 +166,11 @@ def true_opened_fraction(truth: DoorTruth) -> float | None:
 
 
 def doorway_on(wall: Wall, truth: DoorTruth) -> Rectangle | None:
-    """The true doorway in wall coordinates, or None if it is not in this wall."""
-    if abs(float(np.dot(truth.normal, wall.normal))) < SAME_DIRECTION:
+    """The true doorway in wall coordinates, as it shows on this side, or None if it is not in this wall."""
+    facing = float(np.dot(truth.normal, wall.normal))
+    if abs(facing) < SAME_DIRECTION:
         return None
-    corners = wall.wall_from_world(truth.corners_in_world)
+    corners = wall.wall_from_world(truth.outlines_in_world[0 if facing > 0 else 1])
     (left, bottom), (right, top) = corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
     middle = (left + right) / 2
     if abs(float(corners[:, 2].mean())) > SAME_PLANE or not 0 < middle < wall.width:

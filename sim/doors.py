@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 
 from sim.closing import ClosedLeaf, close_pair, close_single, joined, rectangle_normal
+from sim.covering import uncovered
 from sim.errors import SimError
 from sim.leaves import find_leaves
 from sim.rays import Rays
@@ -52,6 +53,9 @@ class DoorTruth:
     seen from the side that `normal` points to [m]."""
     normal: np.ndarray
     """(3,) horizontal unit normal of the closed leaf, towards the side to which the (first) leaf opens."""
+    outlines_in_world: tuple[np.ndarray, np.ndarray]
+    """(4, 3) each, like `corners_in_world`: what shows of that rectangle from the side that `normal` points to, and
+    from the other [m]."""
     leaves: tuple[LeafTruth, ...]
 
 
@@ -60,6 +64,12 @@ class Door:
     """A doorway and what closes it; what does not change while the doors move."""
 
     leaves: tuple[ClosedLeaf, ...]
+    corners: np.ndarray
+    """As `DoorTruth.corners_in_world`."""
+    normal: np.ndarray
+    """As in `DoorTruth`."""
+    outlines: tuple[np.ndarray, np.ndarray]
+    """As `DoorTruth.outlines_in_world`."""
 
     @property
     def name(self) -> str:
@@ -87,13 +97,13 @@ def find_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Door, ...]:
     rays = Rays(model, data, moving)
     leaves = find_leaves(model, data)
     singles = [(leaf, close_single(model, rays, leaf) if leaf.is_door_wide else None) for leaf in leaves]
-    doors = [Door((single,)) for _, single in singles if single]
+    doors = [_door(rays, (single,)) for _, single in singles if single]
     paired: set[int] = set()
     for first, second in combinations([leaf for leaf, single in singles if not single], 2):
         if not (first.is_door_wide or second.is_door_wide):
             continue
         if not paired & {first.joint, second.joint} and (pair := close_pair(model, rays, first, second)):
-            doors.append(Door(pair))
+            doors.append(_door(rays, pair))
             paired |= {first.joint, second.joint}
     return tuple(sorted(doors, key=lambda door: door.leaves[0].leaf.joint))
 
@@ -101,13 +111,9 @@ def find_doors(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[Door, ...]:
 def measure_door(model: mujoco.MjModel, data: mujoco.MjData, door: Door) -> DoorTruth:
     """The truth about one door from the joints' present positions."""
     leaves = tuple(_measure_leaf(model, data, one) for one in door.leaves)
-    first = door.leaves[0]
-    normal = _opening_direction(first) if first.leaf.kind == "hinged" else rectangle_normal(first.corners)
-    corners = first.corners if len(door.leaves) == 1 else joined(first.corners, door.leaves[1].corners)
-    right = np.cross([0, 0, 1.0], normal)
-    if (corners[1] - corners[0]) @ right < 0:
-        corners = corners[[1, 0, 3, 2]]
-    return DoorTruth(door.name, first.leaf.kind, tuple(leaf.name for leaf in leaves), corners, normal, leaves)
+    names = tuple(leaf.name for leaf in leaves)
+    kind = door.leaves[0].leaf.kind
+    return DoorTruth(door.name, kind, names, door.corners, door.normal, door.outlines, leaves)
 
 
 def put_doors(model: mujoco.MjModel, data: mujoco.MjData, doors: Sequence[Door], openings: Mapping[str, float]) -> None:
@@ -134,6 +140,16 @@ def put_doors(model: mujoco.MjModel, data: mujoco.MjData, doors: Sequence[Door],
         for one in door.leaves:
             _wedge(model, data, one.leaf.joint)
     mujoco.mj_forward(model, data)
+
+
+def _door(rays: Rays, leaves: tuple[ClosedLeaf, ...]) -> Door:
+    first = leaves[0]
+    normal = _opening_direction(first) if first.leaf.kind == "hinged" else rectangle_normal(first.corners)
+    corners = first.corners if len(leaves) == 1 else joined(first.corners, leaves[1].corners)
+    right = np.cross([0, 0, 1.0], normal)
+    if (corners[1] - corners[0]) @ right < 0:
+        corners = corners[[1, 0, 3, 2]]
+    return Door(leaves, corners, normal, (uncovered(rays, corners, normal), uncovered(rays, corners, -normal)))
 
 
 def _named(doors: Sequence[Door], name: str) -> list[ClosedLeaf]:

@@ -39,7 +39,15 @@ def truth(name: str, where: Wall, left: float, right: float, *, angle_deg: float
         np.array([[right, 0.0, depth], [left, 0.0, depth], [left, 2.0, depth], [right, 2.0, depth]])
     )
     one = SimpleNamespace(opening_angle=np.radians(angle_deg), corners_in_world=corners)
-    return SimpleNamespace(name=name, kind="hinged", corners_in_world=corners, normal=-where.normal, leaves=(one,))
+    covered = np.nan * corners  # as it shows from the side that its normal points to, the wall's other one
+    return SimpleNamespace(
+        name=name,
+        kind="hinged",
+        corners_in_world=corners,
+        outlines_in_world=(covered, corners),
+        normal=-where.normal,
+        leaves=(one,),
+    )
 
 
 def result(where: Wall, *doors: Door) -> Any:

@@ -184,6 +184,20 @@ def test_a_sliding_leaf_on_the_wall_s_face_covers_its_opening_when_closed() -> N
         put_doors(model, data, find_doors(model, data), {"rail": 0.3})
 
 
+def test_of_a_leaf_that_overlaps_its_opening_the_side_with_the_wall_before_it_shows_the_opening() -> None:
+    leaf = """
+    <body name="slider" pos="0 0.15 0"><joint name="rail" type="slide" axis="1 0 0" range="0 1"/>
+      <geom type="box" pos="0 0 1.06" size="0.47 0.02 1.055"/></body>"""
+    door = only(true_doors(*world(leaf)))
+
+    behind, before = door.outlines_in_world if door.normal[1] > 0 else door.outlines_in_world[::-1]
+    # 0.94 m of leaf, up to 2.115 m, stand behind (y > 0.12) an opening 0.906 m wide and 2.11 m high
+    np.testing.assert_allclose(np.abs(behind[:, 0]), 0.47, atol=1e-6)
+    np.testing.assert_allclose(np.abs(before[:, 0]), 0.453, atol=0.001)
+    np.testing.assert_allclose(before[2:, 2], 2.11, atol=0.001)
+    np.testing.assert_allclose(before[:2, 2], 0.005, atol=1e-6)  # the floor covers nothing
+
+
 FRIDGE = """
 <geom type="box" pos="2 -0.65 0.95" size="0.3 0.02 0.95"/>
 <geom type="box" pos="1.7 -0.35 0.95" size="0.02 0.3 0.95"/>
