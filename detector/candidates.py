@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.edges import Edges
+from detector.edges import COLOUR_ALONG, Edges
 from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.rectangles import CLEAR_SHARE, LEAST_VISIBLE, box_sums, integral, pairs
@@ -225,7 +225,9 @@ class Steps:
         return not (same & (self.wall_outside < 0.4)).any()
 
     def agree(self) -> bool:
-        """Whether the inside differs in one way from wall on all visible sides: a surface of its own."""
+        """Whether the inside differs in one way from wall on all visible sides, or is framed: a surface of its own."""
+        if self.wall_outside.max() < WALL_BESIDE:  # a frame of its own
+            return True
         if self.wall_outside.min() < WALL_BESIDE or self.wall_outside.mean() < WALL_ROUND:
             return False
         values = np.column_stack([self.colour / FAINT_COLOUR, self.depth / FAINT_DEPTH])
@@ -287,7 +289,7 @@ def overshoot(boxes: Boxes, scene: Scene) -> tuple[NDArray[np.float64], NDArray[
     top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
     upright = scene.sums(cv2.dilate(scene.edges.faint_upright.astype(np.uint8), np.ones((1, 3), np.uint8)) > 0)
     level = scene.sums(cv2.dilate(scene.edges.faint_level.astype(np.uint8), np.ones((3, 1), np.uint8)) > 0)
-    clear = 4  # the corners themselves are round
+    clear = 1 + round(COLOUR_ALONG / 2 / scene.merged.pixel_size)  # so far an edge is smoothed beyond its end
     above = [[top - clear - reach, x, top - clear, x + 1] for x in (left, right)]
     beside = [[top, left - clear - reach, top + 1, left - clear], [top, right + clear, top + 1, right + clear + reach]]
     shares = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from time import perf_counter
 from typing import NamedTuple
@@ -79,8 +79,9 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         search, scene = find_doors(merged, seen, look.face, area, (wall.height, floor), parameters)
         rectangles = settle_sides(doorway_rectangles(search), look.passed, scene, wall.height, parameters)
     with clock("angles"):
-        doors = [describe_door(r, merged, seen, look.around, wall.height, parameters) for r in rectangles]
-        doors = [with_lower_edge(d, look.low, merged, wall.height, floor, parameters) for d in doors]
+        bare = replace(merged, depth=np.where(scene.visible, merged.depth, np.float32(np.nan)))
+        doors = [describe_door(r, bare, seen, look.around, wall.height, parameters) for r in rectangles]
+        doors = [with_lower_edge(d, look.low, bare, wall.height, floor, parameters) for d in doors]
         doors = judged(doors, search, scene, wall.height)
     return WallResult(
         wall=wall,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,7 +22,8 @@ from detector.candidates import (
     surroundings,
 )
 from detector.dominance import Dominance, dominance
-from detector.edges import Edges, find_edges
+from detector.edges import find_edges
+from detector.occluders import occluders
 from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.rectangles import find_lines
@@ -40,12 +40,6 @@ OPEN_SHARE = 0.15
 CLEAR_SUPPORT = 0.8
 """Support of every side and foot of an outline that cuts a rectangle out of a wall of its own colour."""
 MAX_OVERSHOOT = 0.5
-OCCLUDER = 0.1
-"""What is nearer than this to the room and does not slope is no leaf [m]: one at 6 deg, 0.95 m wide, is nearer."""
-LEAF_EDGE = 0.15
-"""A leaf seen on its edge is a strip narrower than this, handles and slope included [m]."""
-SILHOUETTE_PX = 3
-"""Edges this close to what stands before the wall are its silhouette."""
 MAX_LINES = 50
 SHOWN = 30
 """Rejected candidates that are kept for the record."""
@@ -110,27 +104,13 @@ def find_doors(
 
 def fainter_doors(faint: tuple[Candidate, ...], clear: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
     """Those of faint outline that claim no piece of wall of one of clear outline, unless this is their frame."""
-    doors = [c for c in clear if c.rejected_by is None]
+    doors = [c for c in smallest(clear) if c.rejected_by is None]
     kept = []
     for candidate in faint:
         round_it = [d for d in doors if covers(candidate, d)]
         if candidate.rejected_by is None and (not round_it or any(frames(d, candidate) for d in round_it)):
             kept.append(candidate)
     return tuple(kept)
-
-
-def occluders(merged: Orthoimage, seen: Image, edges: Edges) -> Mask:
-    """(H, W) furniture just before the wall, and its silhouette: that is no discontinuity of the wall (figure 23).
-
-    The leaf of an open door stands out, too, but it slopes, or is seen on its edge, a narrow strip beside its hole.
-    """
-    nearer = ((np.nan_to_num(merged.depth, nan=-np.inf) > OCCLUDER) & ~edges.sloping).astype(np.uint8)
-    across = np.ones((1, 2 * round(LEAF_EDGE / 2 / merged.pixel_size) + 1), np.uint8)
-    narrow = (nearer > 0) & (cv2.morphologyEx(nearer, cv2.MORPH_OPEN, across) == 0)
-    beside_hole = cv2.dilate((seen == Visibility.THROUGH).astype(np.uint8), across) > 0
-    nearer[narrow & beside_hole] = 0
-    side = 2 * SILHOUETTE_PX + 1
-    return cv2.dilate(nearer, np.ones((side, side), np.uint8)) > 0
 
 
 def judge(

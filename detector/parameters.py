@@ -85,7 +85,7 @@ class DetectorParameters(BaseModel):
     min_height: float = Field(1.6, gt=0, le=5, description="lowest doorway [m]; ours")
     max_height: float = Field(2.6, gt=0, le=10, description="highest doorway [m]; ours")
     min_visible_closed: float = Field(
-        0.5, ge=0, le=1, description="least visible share of a closed door; section 7.4 has 40 % of a panel occluded"
+        0.42, ge=0, le=1, description="least visible share of a closed door; section 7.4 has 40 % of a panel occluded"
     )
     min_visible: float = Field(
         0.35, ge=0, le=1, description="least visible share of a doorway; ours: an open leaf hides more than 40 %"

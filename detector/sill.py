@@ -46,7 +46,7 @@ def hangs(box: Boxes, scene: Scene) -> bool:
 def _surface(scene: Scene, rows: slice, columns: slice) -> NDArray[np.float64]:
     """(4,) median colour and depth of a strip in units of what counts as the same; NaN where it is hidden."""
     depth = scene.merged.depth[rows, columns]
-    known = scene.merged.coloured[rows, columns] & np.isfinite(depth)
+    known = scene.merged.coloured[rows, columns] & scene.visible[rows, columns] & np.isfinite(depth)
     if known.sum() <= LEAST_KNOWN * known.size:
         return np.full(4, np.nan)
     colour = np.median(scene.merged.colour[rows, columns][known], axis=0) / 255

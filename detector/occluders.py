@@ -1,0 +1,92 @@
+"""What stands before a wall and hides it: furniture, curtains, plants (figure 23; ours)."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from detector.edges import FLAT, Edges
+from detector.openings import Visibility
+from detector.result import Image, Mask, Orthoimage
+
+NEARER = 0.1
+"""What is nearer than this to the room and does not slope is no leaf [m]: one at 6 deg, 0.95 m wide, is nearer."""
+BEFORE = 0.04
+"""What stands out further than frames and skirting, and is set off on both sides, is no leaf [m]."""
+SET_OFF = 0.02
+"""Step to either side of what is set off [m]; a leaf leaves the wall's plane at its hinge by degrees."""
+LOOSE = 0.3
+"""Least share of its height over which a leaf hangs on the wall, and of a shadow's rim that it borders on."""
+LEAF_EDGE = 0.15
+"""A leaf seen on its edge is a strip narrower than this, handles and slope included [m]."""
+TALL = 0.3
+"""What is lower than this hides no side of a door [m]."""
+SHADOW = 0.03
+"""Narrower shadows lie beside a leaf that is recessed, as the gap does [m]."""
+SILHOUETTE = 0.015, 0.025
+"""Edges this close to what stands just before the wall, and to a shadow, are their silhouette [m]."""
+
+
+def occluders(merged: Orthoimage, seen: Image, edges: Edges) -> Mask:
+    """(H, W) what hides the wall and stands just before it or throws a shadow on it, and its silhouette.
+
+    A silhouette is no discontinuity of the wall. The leaf of an open door stands out, too, and throws a shadow, but it
+    slopes, or is seen on its edge, a narrow strip beside its hole.
+    """
+    nearer = ((np.nan_to_num(merged.depth, nan=-np.inf) > NEARER) & ~edges.sloping).astype(np.uint8)
+    across = np.ones((1, 2 * round(LEAF_EDGE / 2 / merged.pixel_size) + 1), np.uint8)
+    narrow = (nearer > 0) & (cv2.morphologyEx(nearer, cv2.MORPH_OPEN, across) == 0)
+    holes = seen == Visibility.THROUGH
+    beside_hole = cv2.dilate(holes.astype(np.uint8), across) > 0
+    nearer[narrow & beside_hole] = 0
+    before = (nearer > 0) | _loose(merged, holes)
+    behind = _shadows(seen, edges.sloping, holes, merged.pixel_size)
+    return _grown(before, SILHOUETTE[0], merged.pixel_size) | _grown(behind, SILHOUETTE[1], merged.pixel_size)
+
+
+def _grown(mask: Mask, way: float, pixel_size: float) -> Mask:
+    side = 2 * round(way / pixel_size) + 1
+    return cv2.dilate(mask.astype(np.uint8), np.ones((side, side), np.uint8)) > 0
+
+
+def _loose(merged: Orthoimage, holes: Mask) -> Mask:
+    """(H, W) what stands before the wall without hanging on it by a side: curtains with their folds, for one."""
+    depth = np.nan_to_num(merged.depth, nan=0.0)
+    before = depth > BEFORE
+    if not before.any():
+        return before
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(before.astype(np.uint8), connectivity=4)
+    height = stats[:, cv2.CC_STAT_HEIGHT]
+    kept = height * merged.pixel_size > TALL
+    kept[0] = False
+    reach = 3
+    for sign in (1, -1):  # pixels whose neighbour towards one side lies lower: the border there
+        outside = np.roll(before, sign, axis=1)
+        rows, columns = np.nonzero(before & ~outside)
+        further, inner = (np.clip(columns - sign * way, 0, depth.shape[1] - 1) for way in (reach, -reach))
+        smooth = np.isfinite(merged.depth[rows, further]) & (depth[rows, inner] - depth[rows, further] < SET_OFF)
+        kept &= np.bincount(labels[rows, columns], smooth, count) < LOOSE * height
+    for number in np.flatnonzero(kept):
+        left, top, width, tall = stats[number, :4]
+        part = np.s_[top : top + tall, max(left - 2, 0) : left + width + 2]
+        own = labels[part] == number
+        u = np.nonzero(own)[1] * merged.pixel_size
+        slope = np.polyfit(u, depth[part][own], 1)[0] if width > 2 else 0.0
+        kept[number] = (
+            abs(slope) < FLAT and not (holes[part] & (cv2.dilate(own.view(np.uint8), np.ones((5, 5))) > 0)).any()
+        )
+    return np.asarray(kept[labels])
+
+
+def _shadows(seen: Image, sloping: Mask, holes: Mask, pixel_size: float) -> Mask:
+    """(H, W) what furniture further away hides; not what a leaf does, nor what lies beside a hole."""
+    size = max(1, round(SHADOW / pixel_size))
+    shadowed = cv2.morphologyEx((seen == Visibility.SHADOWED).astype(np.uint8), cv2.MORPH_OPEN, np.ones((size, size)))
+    count, labels = cv2.connectedComponents(shadowed, connectivity=4)
+    leaf = (holes | (sloping & (seen == Visibility.DATA))).astype(np.uint8)
+    beside_leaf = cv2.dilate(leaf, np.ones((5, 5), np.uint8)) > 0
+    rim = (shadowed > 0) & (cv2.erode(shadowed, np.ones((3, 3), np.uint8)) == 0)
+    around, touching = (np.bincount(labels[mask], minlength=count) for mask in (rim, rim & beside_leaf))
+    kept = touching < LOOSE * around
+    kept[0] = False
+    return np.asarray(kept[labels])
