@@ -1,4 +1,4 @@
-"""Where a view shows the wall's face: 2 x 1 m of wall in samples of 30 mm."""
+"""Where a view shows the wall's face, 2 x 1 m of wall in samples of 30 mm; and where a colour changes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from detector.edges import wall_face
+from detector.edges import find_edges, wall_face
+from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.result import Orthoimage
 from tests.detector.conftest import plain_image
@@ -35,3 +36,17 @@ def test_a_leaf_that_stands_open_is_no_face(std: float) -> None:
     # at 25 deg the leaf is 4.5 cm off the wall's plane after 10 cm, that is after 20 of its columns
     face = wall_face(noisy(std, 25.0), PARAMETERS)
     assert face[:, :190].mean() > 0.97 and face[:, 222:].mean() < 0.03
+
+
+def test_the_head_of_a_door_of_boards_among_boards_is_a_faint_edge() -> None:
+    # boards of 10 cm differ by 5 % and have a grain of 2 %; the head of the door is a step of 1.5 %
+    random = np.random.default_rng(0)
+    grain = np.kron(0.05 * random.standard_normal(30), np.ones(10)) + 0.02 * random.standard_normal(300)
+    image = plain_image((200, 300))
+    grey = 0.5 + grain + np.where(np.arange(200)[:, None] < 100, 0.0, 0.015)
+    image.colour[:] = np.rint(255 * grey)[..., None]
+
+    edges = find_edges(image, np.full((200, 300), Visibility.DATA, np.uint8), DetectorParameters(pixel_size=0.01))
+
+    assert edges.faint_level[99:101, 20:-20].any(axis=0).mean() > 0.95
+    assert edges.faint_level[:95].mean() < 0.01  # and no edge where the boards go on
