@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -63,6 +64,8 @@ class Scene:
     """First row that may hold points of the floor instead of the wall."""
     protrusion: float
     """What is nearer than this to the room is not in the doorway [m]."""
+    strips: dict[tuple[int, ...], Strip | None] = field(default_factory=dict)
+    """Strips along the sides of candidates that were measured already, by their corners: candidates share lines."""
 
     def sums(self, mask: Mask) -> NDArray[np.int32]:
         """Integral image of a mask, above the floor's points."""
@@ -264,20 +267,53 @@ def boarded(box: Boxes, scene: Scene) -> bool:
     return bool(across > max(FAINT_COLOUR, UNLIKE * along))
 
 
+class Strip(NamedTuple):
+    """What is seen of the wall on a strip."""
+
+    colour: NDArray[np.float64]
+    """(3,) median, of 1."""
+    depth: float
+    """Median [m]."""
+    wall: float
+    """Share of it that is wall area."""
+
+
 def steps(box: Boxes, scene: Scene) -> Steps:
     """What changes across the sides of one rectangle, by medians over strips."""
-    inner, outer = strips(box, scene, outside=False), strips(box, scene, outside=True)
     colour, depth, wall = np.full((3, 3), np.nan), np.full(3, np.nan), np.ones(3)
-    for i in range(3):
-        cut = [np.s_[b[0, 0] : b[0, 2] : 2, b[0, 1] : b[0, 3] : 2] for b in (inner[i], outer[i])]
-        known = [scene.merged.coloured[c] & scene.visible[c] & np.isfinite(scene.merged.depth[c]) for c in cut]
-        if any(k.sum() < 0.1 * max(k.size, 1) for k in known):
-            continue
-        colours = [np.median(scene.merged.colour[c][k], axis=0) / 255 for c, k in zip(cut, known, strict=True)]
-        depths = [float(np.median(scene.merged.depth[c][k])) for c, k in zip(cut, known, strict=True)]
-        colour[i], depth[i] = colours[0] - colours[1], depths[0] - depths[1]
-        wall[i] = scene.wall[cut[1]][known[1]].mean()
+    sides = zip(strips(box, scene, outside=False), strips(box, scene, outside=True), strict=True)
+    for i, (inner, outer) in enumerate(sides):
+        inside, outside = _strip(inner[0], scene), _strip(outer[0], scene)
+        if inside and outside:
+            colour[i], depth[i] = inside.colour - outside.colour, inside.depth - outside.depth
+            wall[i] = outside.wall
     return Steps(colour, depth, wall)
+
+
+def _strip(corners: NDArray[np.int64], scene: Scene) -> Strip | None:
+    """The strip between corners (4,), which is measured once; None where nine tenths of it are hidden."""
+    top, left, bottom, right = key = tuple(corners.tolist())
+    if key not in scene.strips:
+        cut = np.s_[top:bottom:2, left:right:2]
+        depth = scene.merged.depth[cut]
+        known = scene.merged.coloured[cut] & scene.visible[cut] & np.isfinite(depth)
+        scene.strips[key] = (
+            Strip(
+                median_colour(scene.merged.colour[cut], known),
+                float(np.median(depth[known])),
+                float(scene.wall[cut][known].mean()),
+            )
+            if known.sum() >= 0.1 * max(known.size, 1)
+            else None
+        )
+    return scene.strips[key]
+
+
+def median_colour(colours: Image, known: Mask) -> NDArray[np.float64]:
+    """(3,) median of the known colours, of 1: from a histogram, which is faster than to sort; at least one is known."""
+    mask, middle = known.view(np.uint8), np.array([known.sum() - 1, known.sum()]) // 2
+    counts = [cv2.calcHist([colours], [i], mask, [256], [0, 256]).cumsum() for i in range(3)]
+    return np.array([np.searchsorted(c, middle, side="right").mean() for c in counts]) / 255
 
 
 def overshoot(boxes: Boxes, scene: Scene) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

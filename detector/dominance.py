@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +14,10 @@ from detector.result import Image, Mask
 
 SAMPLED_PX = 6
 """Every so many pixels are enough for the shares of a rectangle."""
+BIN_OF_LEVEL = (np.arange(256) * 12 // 255).astype(np.uint8)
+"""Bin of each level of a channel, of the thirteen in which the most frequent colour is sought."""
+LIKE = 0.12 * 255
+"""Colours closer than this in every channel are alike [levels]."""
 
 
 @dataclass(frozen=True)
@@ -55,18 +60,26 @@ def _plane(depth: NDArray, data: Mask) -> NDArray[np.float64]:
     columns = np.flatnonzero(data.sum(axis=0) >= 0.2 * data.shape[0])
     if len(columns) < 5:
         return np.full(depth.shape[1], np.median(depth[data]), np.float64)
-    medians = np.nanmedian(depth[:, columns], axis=0)
+    medians = column_medians(depth[:, columns])
     i, j = np.triu_indices(len(columns), max(1, len(columns) // 6))
     slope = np.median((medians[j] - medians[i]) / (columns[j] - columns[i]))
     return np.arange(depth.shape[1]) * slope + np.median(medians - slope * columns)
 
 
+def column_medians(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(W,) median of each column without its NaNs; every column has a number. Many times as fast as `np.nanmedian`."""
+    ascending = np.sort(values, axis=0)  # NaNs go to the end
+    count = len(values) - np.isnan(values).sum(axis=0)
+    lower, upper = (np.take_along_axis(ascending, middle[None], axis=0)[0] for middle in ((count - 1) // 2, count // 2))
+    return (lower + upper) / 2
+
+
 def _dominant_colour(colours: Image) -> float:
-    """Share of the colours that are like the most frequent one."""
-    values = colours.astype(np.float32) / 255
-    bins = (values * 12).astype(np.int64) @ np.array([169, 13, 1])
-    centre = values[bins == np.bincount(bins).argmax()].mean(axis=0)
+    """Share of the colours (N, 3) that are like the most frequent one."""
+    red, green, blue = (cv2.LUT(colours, BIN_OF_LEVEL).T).astype(np.int32)
+    bins = (red * 13 + green) * 13 + blue
+    pixels, like = colours[None], (bins == np.bincount(bins).argmax())[None].view(np.uint8)
     for _ in range(3):
-        like = np.abs(values - centre).max(axis=1) < 0.12
-        centre = values[like].mean(axis=0)
-    return float(like.mean())
+        centre = np.array(cv2.mean(pixels, like)[:3])
+        like = cv2.inRange(pixels, np.floor(centre - LIKE) + 1, np.ceil(centre + LIKE) - 1)
+    return cv2.countNonZero(like) / len(colours)

@@ -74,9 +74,11 @@ def find_doors(
     visible = ((seen == Visibility.DATA) | (seen == Visibility.THROUGH)) & ~hidden
     open_to_view = ((seen != Visibility.SHADOWED) & ~hidden)[:lowest]
 
+    wall = Scene(merged, seen, edges, area.mask, face, visible, floor_row, lowest, parameters.max_protrusion)
+
     def search(upright: Mask, level: Mask) -> tuple[Scene, Boxes, tuple[NDArray, NDArray]]:
         found = replace(edges, upright=upright & ~hidden, level=level & ~hidden)
-        scene = Scene(merged, seen, found, area.mask, face, visible, floor_row, lowest, parameters.max_protrusion)
+        scene = replace(wall, edges=found)
         lines = (
             find_lines(
                 found.upright[:lowest], 0, round(parameters.min_height / px), LINE_SHARE, MAX_LINES, open_to_view

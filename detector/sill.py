@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.candidates import SAME_COLOUR, SAME_DEPTH, Boxes, Scene
+from detector.candidates import SAME_COLOUR, SAME_DEPTH, Boxes, Scene, median_colour
 
 SILL = 0.045
 """Height of the strip just above the floor [m]."""
@@ -49,7 +49,7 @@ def _surface(scene: Scene, rows: slice, columns: slice) -> NDArray[np.float64]:
     known = scene.merged.coloured[rows, columns] & scene.visible[rows, columns] & np.isfinite(depth)
     if known.sum() <= LEAST_KNOWN * known.size:
         return np.full(4, np.nan)
-    colour = np.median(scene.merged.colour[rows, columns][known], axis=0) / 255
+    colour = median_colour(scene.merged.colour[rows, columns], known)
     return np.append(colour / SAME_COLOUR, np.median(depth[known]) / SAME_DEPTH)
 
 
