@@ -69,9 +69,9 @@ class Scene:
 
     def sums(self, mask: Mask) -> NDArray[np.int32]:
         """Integral image of a mask, above the floor's points."""
-        upper = mask.copy()
-        upper[self.lowest_row :] = False
-        return integral(upper)
+        sums = integral(mask)
+        sums[self.lowest_row + 1 :] = sums[self.lowest_row]
+        return sums
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +127,7 @@ def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> 
 def _edges_and_view(edges: Mask, scene: Scene, across: tuple[int, int]) -> tuple[NDArray, NDArray]:
     """Integral images of the edges and of what is visible, both a pixel wider across the sides."""
     shape = np.ones(across, np.uint8)
-    hits, visible = (scene.sums(cv2.dilate(mask.astype(np.uint8), shape) > 0) for mask in (edges, scene.visible))
+    hits, visible = (scene.sums(cv2.dilate(mask.view(np.uint8), shape) > 0) for mask in (edges, scene.visible))
     return hits, visible
 
 
@@ -323,8 +323,8 @@ def overshoot(boxes: Boxes, scene: Scene) -> tuple[NDArray[np.float64], NDArray[
     """
     reach = round(OVERSHOOT / scene.merged.pixel_size)
     top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
-    upright = scene.sums(cv2.dilate(scene.edges.faint_upright.astype(np.uint8), np.ones((1, 3), np.uint8)) > 0)
-    level = scene.sums(cv2.dilate(scene.edges.faint_level.astype(np.uint8), np.ones((3, 1), np.uint8)) > 0)
+    upright = scene.sums(cv2.dilate(scene.edges.faint_upright.view(np.uint8), np.ones((1, 3), np.uint8)) > 0)
+    level = scene.sums(cv2.dilate(scene.edges.faint_level.view(np.uint8), np.ones((3, 1), np.uint8)) > 0)
     clear = 1 + round(COLOUR_ALONG / 2 / scene.merged.pixel_size)  # so far an edge is smoothed beyond its end
     above = [[top - clear - reach, x, top - clear, x + 1] for x in (left, right)]
     beside = [[top, left - clear - reach, top + 1, left - clear], [top, right + clear, top + 1, right + clear + reach]]

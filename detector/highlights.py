@@ -102,7 +102,7 @@ def _candidates(
     The paper's segments contain no other. An overexposed top is darker in the middle after the fall-off of the flash
     was divided out, so that ours may: the profiles tell it from a ring.
     """
-    from skimage.measure import label, regionprops
+    from skimage.measure import label
 
     coded = np.where(known, levels + np.uint8(1), np.uint8(0))
     segments = label(coded, background=0, connectivity=1)
@@ -115,14 +115,17 @@ def _candidates(
     peaks = np.bincount(segments.ravel(), ((highest > coded) | (lowest == 0)).ravel(), count) == 0
     peaks[0] = False
     minimum = parameters.min_highlight_area / parameters.pixel_size**2 / 8  # the top level is the tip of the highlight
-    kept = np.where(peaks[segments], segments, 0)
-    found = [p for p in regionprops(kept) if p.area >= minimum]
-    found = [p for p in found if region[tuple(np.rint(p.centroid).astype(int))]]
-    found.sort(key=lambda p: (-p.area, p.label))
+    areas = np.bincount(segments.ravel(), minlength=count)
+    large = np.flatnonzero(peaks & (areas >= minimum))
+    pixels = np.nonzero(np.isin(segments, large))
+    members = segments[pixels]
+    centroids = np.stack([np.bincount(members, axis, count) for axis in pixels], axis=1) / np.maximum(areas, 1)[:, None]
+    inside = region[tuple(np.rint(centroids[large]).astype(int).T)]
+    found = large[inside]
+    found = found[np.argsort(-areas[found], kind="stable")][:MAX_CANDIDATES]
     numbered = np.zeros(count, np.int32)
-    for number, segment in enumerate(found[:MAX_CANDIDATES], start=1):
-        numbered[segment.label] = number
-    return numbered[segments], [np.array(segment.centroid) for segment in found[:MAX_CANDIDATES]]
+    numbered[found] = np.arange(1, len(found) + 1)
+    return numbered[segments], list(centroids[found])
 
 
 def _contour(

@@ -100,13 +100,13 @@ def _settled(
     ]
     frame = round(FRAME / pixel_size) if face[rows, columns].mean() < OPEN_SHARE else 0
     inside = max(1, round(BEHIND_FRAME / pixel_size))
-    depth = _medians(merged.depth[rows], 0)
+    depth = merged.depth[rows]
     left = _without_frame(wall, depth, _edge(hole, wall, sides[0], reach, centres[0]), frame, inside)
     right = _edge(hole[::-1], wall[::-1], count - sides[1], reach, count - centres[1])
-    right = count - _without_frame(wall[::-1], depth[::-1], right, frame, inside)
+    right = count - _without_frame(wall[::-1], depth[:, ::-1], right, frame, inside)
     hole, wall = (m[:, columns].mean(axis=1) for m in (passed, face))
     top = _edge(hole, wall, sides[2], reach, centres[2])
-    top = _without_frame(wall, _medians(merged.depth[:, columns], 1), top, frame, inside)
+    top = _without_frame(wall, merged.depth[:, columns].T, top, frame, inside)
     return Rectangle(
         left * pixel_size + HALF_GAP,
         rectangle.bottom,
@@ -132,12 +132,12 @@ def _edge(hole: NDArray, face: NDArray, position: float, reach: int, otherwise: 
     return otherwise
 
 
-def _medians(depth: NDArray[np.float32], axis: int) -> NDArray[np.float32]:
-    """Median of each column (axis 0) or row (axis 1); NaN where there is no data."""
-    result = np.full(depth.shape[1 - axis], np.nan, np.float32)
-    known = np.isfinite(depth).any(axis=axis)
+def _medians(depth: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Median of each column; NaN where there is no data."""
+    result = np.full(depth.shape[1], np.nan, np.float32)
+    known = np.isfinite(depth).any(axis=0)
     if known.any():
-        result[known] = np.nanmedian(depth[:, known] if axis == 0 else depth[known], axis=axis)
+        result[known] = np.nanmedian(depth[:, known], axis=0)
     return result
 
 
@@ -146,7 +146,7 @@ def _without_frame(face: NDArray, depth: NDArray, position: float, widest: int, 
 
     Args:
         face: Share of each column or row that is the wall's face; the doorway at higher indices.
-        depth: Of each column or row [m]; a leaf seen at a grazing angle is face in steps, but not of one depth.
+        depth: (M, N) likewise in columns [m]; a leaf seen at a grazing angle is face in steps, but not of one depth.
         position: Where the side was found, in borders of pixels.
         widest: How far the face may go on [px].
         inside: Over how many pixels it must be absent beyond its end.
@@ -157,6 +157,6 @@ def _without_frame(face: NDArray, depth: NDArray, position: float, widest: int, 
         return position
     end = first + int(absent[0])
     beyond = face[end + 1 : end + 1 + inside]
-    frame = depth[first : end - 1]
+    frame = _medians(depth[:, first : end - 1])
     is_frame = np.ptp(frame) < ONE_FACE and np.abs(frame).max() < STANDS_OUT  # False for NaN
     return float(end) if is_frame and len(beyond) == inside and beyond.max() < 1 - ABSENT else position

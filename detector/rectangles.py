@@ -27,15 +27,24 @@ def lateral_histogram(edges: Mask, axis: int, window_px: int) -> NDArray[np.floa
     Returns:
         (W,) or (H,) shares in [0, 1].
     """
-    return _window_shares(edges, axis, window_px).max(axis=axis)
+    window = min(window_px, edges.shape[axis])
+    return _shares(_window_sums(edges, axis, window).max(axis=axis), window)
 
 
-def _window_shares(mask: Mask, axis: int, window_px: int) -> NDArray[np.float32]:
-    """(H, W) share of a mask in the window round each pixel, along the columns (axis 0) or rows (axis 1)."""
-    window = min(window_px, mask.shape[axis])
-    size = (1, window) if axis == 0 else (window, 1)  # OpenCV's order is width, height
-    shares = cv2.boxFilter(mask.astype(np.float32), -1, size, borderType=cv2.BORDER_CONSTANT)
-    return np.asarray(shares, np.float32)
+def _window_sums(mask: Mask, axis: int, window: int) -> NDArray[np.int32]:
+    """Pixels of a mask in each window along the columns (axis 0) or rows (axis 1) that fits into the image.
+
+    Returns:
+        (H - window + 1, W) or (H, W - window + 1).
+    """
+    sums = integral(mask)
+    ends, starts = (sums[window:], sums[:-window]) if axis == 0 else (sums[:, window:], sums[:, :-window])
+    return np.diff(ends - starts, axis=1 - axis)
+
+
+def _shares(sums: NDArray[np.int32], window: int) -> NDArray[np.float32]:
+    """Sums over windows as parts of their length."""
+    return (sums * (1 / window)).astype(np.float32)
 
 
 def find_lines(
@@ -53,7 +62,7 @@ def find_lines(
         (L,) columns or rows, ascending; whole numbers are pixel centres.
     """
     across = (2 * TOLERANCE_PX + 1, 1) if axis == 0 else (1, 2 * TOLERANCE_PX + 1)
-    wide = cv2.dilate(edges.astype(np.uint8), np.ones(across[::-1], np.uint8)) > 0
+    wide = cv2.dilate(edges.view(np.uint8), np.ones(across[::-1], np.uint8)) > 0
     covered, sharp = lateral_histogram(wide, axis, window_px), lateral_histogram(edges, axis, window_px)
     is_line = covered >= share
     if visible is not None and not visible.all():
@@ -75,12 +84,13 @@ def find_lines(
 
 def _clear_where_visible(edges: Mask, visible: Mask, axis: int, window_px: int) -> NDArray[np.bool_]:
     """(W,) or (H,) columns or rows with a window that is hidden in part, and edge over most of what is visible."""
-    within, seen, hits = (
-        _window_shares(mask, axis, window_px) for mask in (np.ones_like(visible), visible, edges & visible)
-    )
-    half_a_pixel = 0.5 / min(window_px, edges.shape[axis])
-    partly = (seen < within - half_a_pixel) & (within > 1 - half_a_pixel)
-    return np.asarray((partly & (hits >= CLEAR_SHARE * np.maximum(seen, LEAST_VISIBLE))).any(axis=axis))
+    window = min(window_px, edges.shape[axis])
+    result: Mask = np.asarray(~visible.all(axis=axis))
+    lines = np.flatnonzero(result)
+    seen, hits = (_window_sums(mask.take(lines, 1 - axis), axis, window) for mask in (visible, edges & visible))
+    clear = _shares(hits, window) >= CLEAR_SHARE * np.maximum(_shares(seen, window), LEAST_VISIBLE)
+    result[lines] = ((seen < window) & clear).any(axis=axis)
+    return result
 
 
 def pairs(lines: NDArray[np.float64], shortest: float, longest: float) -> NDArray[np.int64]:
@@ -90,9 +100,9 @@ def pairs(lines: NDArray[np.float64], shortest: float, longest: float) -> NDArra
     return np.stack([i, j], axis=1)[(distance >= shortest) & (distance <= longest)]
 
 
-def integral(mask: NDArray) -> NDArray[np.int32]:
+def integral(mask: Mask) -> NDArray[np.int32]:
     """(H + 1, W + 1) sums over all pixels above and to the left."""
-    return np.asarray(cv2.integral(mask.astype(np.uint8)), np.int32)
+    return np.asarray(cv2.integral(mask.view(np.uint8)), np.int32)
 
 
 def box_sums(sums: NDArray[np.int32], boxes: NDArray[np.int64]) -> NDArray[np.int32]:
