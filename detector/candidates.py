@@ -66,6 +66,8 @@ class Scene:
     """What is nearer than this to the room is not in the doorway [m]."""
     strips: dict[tuple[int, ...], Strip | None] = field(default_factory=dict)
     """Strips along the sides of candidates that were measured already, by their corners: candidates share lines."""
+    hanging: dict[tuple[int, int], bool] = field(default_factory=dict)
+    """Whether what is between two columns hangs on the wall, where that was asked already."""
 
     def sums(self, mask: Mask) -> NDArray[np.int32]:
         """Integral image of a mask, above the floor's points."""
@@ -303,7 +305,7 @@ def _strip(corners: NDArray[np.int64], scene: Scene) -> Strip | None:
                 float(np.median(depth[known])),
                 float(scene.wall[cut][known].mean()),
             )
-            if known.sum() >= 0.1 * max(known.size, 1)
+            if np.count_nonzero(known) >= 0.1 * max(known.size, 1)
             else None
         )
     return scene.strips[key]
@@ -311,9 +313,9 @@ def _strip(corners: NDArray[np.int64], scene: Scene) -> Strip | None:
 
 def median_colour(colours: Image, known: Mask) -> NDArray[np.float64]:
     """(3,) median of the known colours, of 1: from a histogram, which is faster than to sort; at least one is known."""
-    mask, middle = known.view(np.uint8), np.array([known.sum() - 1, known.sum()]) // 2
-    counts = [cv2.calcHist([colours], [i], mask, [256], [0, 256]).cumsum() for i in range(3)]
-    return np.array([np.searchsorted(c, middle, side="right").mean() for c in counts]) / 255
+    mask, count = known.view(np.uint8), np.count_nonzero(known)
+    below = np.stack([cv2.calcHist([colours], [i], mask, [256], [0, 256]) for i in range(3)]).cumsum(axis=1)
+    return (below[..., None] <= [(count - 1) // 2, count // 2]).sum(axis=1).mean(axis=1) / 255
 
 
 def overshoot(boxes: Boxes, scene: Scene) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

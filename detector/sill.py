@@ -27,8 +27,15 @@ def hangs(box: Boxes, scene: Scene) -> bool:
     Just above the floor such a rectangle holds what is beside it, and not what is higher up in it. A kick plate differs
     from both; a door of the wall's colour from neither.
     """
+    columns = int(np.ceil(box.left[0] + 0.5)) + 1, int(np.floor(box.right[0] + 0.5)) - 1
+    if columns not in scene.hanging:
+        scene.hanging[columns] = _hangs(*columns, scene)
+    return scene.hanging[columns]
+
+
+def _hangs(left: int, right: int, scene: Scene) -> bool:
+    """`hangs` for what is between two columns."""
     px = scene.merged.pixel_size
-    left, right = int(np.ceil(box.left[0] + 0.5)) + 1, int(np.floor(box.right[0] + 0.5)) - 1
     sill = slice(max(scene.lowest_row - round(SILL / px), 0), scene.lowest_row)
     panel = slice(*(max(scene.floor_row - round(height / px), 0) for height in PANEL[::-1]))
     reach = round(BESIDE / px)
