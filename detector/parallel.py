@@ -9,6 +9,8 @@ from typing import TypeVar
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
+BAND = 64
+"""Rows of an image that are worked on at a time."""
 
 
 def processors() -> int:
@@ -34,6 +36,11 @@ def each(function: Callable[[Item], Result], items: Iterable[Item]) -> list[Resu
         for future in futures:
             future.cancel()
     return [results[i] for i in range(len(items))]
+
+
+def bands(rows: int) -> list[slice]:
+    """The rows of an image in parts whose temporary arrays stay in a processor's cache."""
+    return [slice(start, min(start + BAND, rows)) for start in range(0, rows, BAND)]
 
 
 _POOL = ThreadPoolExecutor(max(1, processors() - 1), "detector")
