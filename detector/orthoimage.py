@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from detector.parallel import each
 from detector.parameters import DetectorParameters
 from detector.result import Image, Mask, Orthoimage
 from detector.room import DetectorError, View, Wall
@@ -110,13 +112,14 @@ def _near_and_deep(
     points: NDArray[np.float32], wall: Wall, parameters: DetectorParameters
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Indices of the points within the wall's slab, and of those behind its face."""
-    indices, depths = [np.zeros(0, np.int64)], [np.zeros(0, np.float32)]
-    for start in range(0, len(points), BLOCK):
+
+    def low_ones(start: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
         depth = wall.depths(points[start : start + BLOCK])
         low = np.flatnonzero(depth < parameters.slab_front)
-        indices.append(start + low)
-        depths.append(depth.take(low))
-    index, depth = np.concatenate(indices), np.concatenate(depths)
+        return start + low, depth.take(low)
+
+    blocks = each(low_ones, range(0, max(len(points), 1), BLOCK))
+    index, depth = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
     # minus infinity is no depth, and no number is none either: such points are left out
     behind = (depth < -parameters.face_tolerance) & (depth > -np.inf)
     return index[depth > -parameters.slab_behind], index[behind]
@@ -166,13 +169,22 @@ def orthoimage(points: WallPoints, wall: Wall, gap_px: int, parameters: Detector
     """
     shape = image_shape(wall, parameters)
     index = pixels(points.slab, wall, shape, parameters.pixel_size)
-    depth = largest(index, points.slab[:, 2], shape[0] * shape[1]).reshape(shape)
-    colour, coloured = _mean_colour(index, points, shape)
-    met = np.isfinite(depth)
-    filled = close_gaps(met, gap_px)
-    filled_colour = close_gaps(coloured, gap_px) & filled
-    colour, depth = nearest(colour, coloured, filled_colour), nearest(depth, met, filled)
-    return Orthoimage(colour, filled_colour, depth, parameters.pixel_size)
+
+    def depth_image() -> tuple[NDArray[np.float32], Mask]:
+        depth = largest(index, points.slab[:, 2], shape[0] * shape[1]).reshape(shape)
+        return depth, np.isfinite(depth)
+
+    def colour_image() -> tuple[Image, Mask]:
+        return _mean_colour(index, points, shape)
+
+    def closed(image: Callable[[], tuple[NDArray, Mask]]) -> tuple[NDArray, Mask]:
+        values, known = image()
+        filled = close_gaps(known, gap_px)
+        return nearest(values, known, filled), filled
+
+    images: list[Callable[[], tuple[NDArray, Mask]]] = [depth_image, colour_image]
+    (depth, _), (colour, coloured) = each(closed, images)
+    return Orthoimage(colour, coloured, depth, parameters.pixel_size)
 
 
 def _mean_colour(index: NDArray[np.int32], points: WallPoints, shape: tuple[int, int]) -> tuple[Image, Mask]:
@@ -242,10 +254,11 @@ def nearest(image: NDArray, known: Mask, wanted: Mask | None = None) -> NDArray:
     if len(gaps) == 0 or not known.any():
         return image
     _, labels = cv2.distanceTransformWithLabels((~known).view(np.uint8), cv2.DIST_L2, 3, labelType=cv2.DIST_LABEL_PIXEL)
-    source = np.flatnonzero(known)[labels.ravel()[gaps] - 1]  # known pixels are labelled from 1, row by row
+    number = np.asarray(labels, np.int32).ravel().take(gaps) - 1  # known pixels are labelled from 1, row by row
+    source = np.flatnonzero(known).take(number)
     result = image.copy()
     flat = result.reshape(known.size, -1)
-    flat[gaps] = flat[source]
+    flat[gaps] = flat.take(source, axis=0)
     return result
 
 
