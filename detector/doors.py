@@ -25,6 +25,7 @@ from detector.dominance import Dominance, dominance
 from detector.edges import find_edges
 from detector.occluders import occluders
 from detector.openings import Visibility
+from detector.parallel import each
 from detector.parameters import DetectorParameters
 from detector.rectangles import find_lines
 from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rectangle, WallArea
@@ -76,7 +77,7 @@ def find_doors(
 
     wall = Scene(merged, seen, edges, area.mask, face, visible, floor_row, lowest, parameters.max_protrusion)
 
-    def search(upright: Mask, level: Mask) -> tuple[Scene, Boxes, tuple[NDArray, NDArray]]:
+    def search(upright: Mask, level: Mask, faint: bool) -> tuple[tuple[Candidate, ...], Scene, tuple[NDArray, NDArray]]:
         found = replace(edges, upright=upright & ~hidden, level=level & ~hidden)
         scene = replace(wall, edges=found)
         lines = (
@@ -85,13 +86,15 @@ def find_doors(
             ),
             find_lines(found.level[:lowest], 1, round(parameters.min_width / px), LINE_SHARE, MAX_LINES, open_to_view),
         )
-        return scene, door_boxes(*lines, scene, parameters), lines
+        boxes = door_boxes(*lines, scene, parameters)
+        return judge(boxes, scene, height, floor, parameters, faint=faint), scene, lines
 
-    scene, boxes, (vertical, horizontal) = search(edges.upright, edges.level)
-    candidates = judge(boxes, scene, height, floor, parameters)
+    searches = [(edges.upright, edges.level, False)]
     if parameters.faint_doors:
-        fainter, more, _ = search(edges.faint_upright, edges.faint_level)
-        candidates += fainter_doors(judge(more, fainter, height, floor, parameters, faint=True), candidates)
+        searches.append((edges.faint_upright, edges.faint_level, True))
+    (candidates, scene, (vertical, horizontal)), *fainter = each(lambda outline: search(*outline), searches)
+    for more, _, _ in fainter:
+        candidates += fainter_doors(more, candidates)
     candidates = smallest(candidates)
     result = DoorSearch(
         colour_edges=edges.colour,
