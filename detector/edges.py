@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -11,6 +13,7 @@ from numpy.typing import NDArray
 
 from detector.openings import Visibility
 from detector.orthoimage import nearest
+from detector.parallel import each
 from detector.parameters import DetectorParameters
 from detector.result import Image, Mask, Orthoimage
 
@@ -64,12 +67,15 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
     Args:
         seen: (H, W) `Visibility`; the edge of a shadow is no edge of the wall.
     """
-    e, f, g = structure_tensor(*colour_derivatives(merged))
+    parts: list[Callable[[], Any]] = [
+        lambda: structure_tensor(*colour_derivatives(merged)),
+        lambda: depth_edges(merged.depth, seen, merged.pixel_size, parameters),
+    ]
+    (e, f, g), relief = each(lambda part: part(), parts)
     gradient = np.where(merged.coloured, di_zenzo(e, f, g), np.float32(0))
     threshold = colour_threshold(gradient, merged.coloured, parameters)
     colour = gradient > threshold
     across = e >= g
-    relief = depth_edges(merged.depth, seen, merged.pixel_size, parameters)
     steps_across, steps_along = relief.edges & relief.across, relief.edges & ~relief.across
     return Edges(
         colour=colour,
@@ -107,8 +113,10 @@ def _difference(image: MatLike, kernel: NDArray[np.float32]) -> NDArray[np.float
 
 def structure_tensor(dx: NDArray[np.float32], dy: NDArray[np.float32]) -> tuple[NDArray[np.float32], ...]:
     """(H, W) each: sums over the channels of dx dx, dx dy and dy dy, from derivatives (H, W, 3)."""
-    x, y = cv2.split(dx), cv2.split(dy)
-    e, f, g = (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] for a, b in ((x, x), (x, y), (y, y)))
+    add = np.ones((1, 3), np.float32)
+    e, f, g = (
+        np.asarray(cv2.transform(cv2.multiply(a, b), add), np.float32) for a, b in ((dx, dx), (dx, dy), (dy, dy))
+    )
     return e, f, g
 
 
