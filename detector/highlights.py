@@ -116,12 +116,12 @@ def _candidates(
     peaks[0] = False
     minimum = parameters.min_highlight_area / parameters.pixel_size**2 / 8  # the top level is the tip of the highlight
     areas = np.bincount(segments.ravel(), minlength=count)
-    large = np.flatnonzero(peaks & (areas >= minimum))
-    pixels = np.nonzero(np.isin(segments, large))
+    large = peaks & (areas >= minimum)
+    pixels = np.nonzero(large[segments])
     members = segments[pixels]
     centroids = np.stack([np.bincount(members, axis, count) for axis in pixels], axis=1) / np.maximum(areas, 1)[:, None]
-    inside = region[tuple(np.rint(centroids[large]).astype(int).T)]
-    found = large[inside]
+    found = np.flatnonzero(large)
+    found = found[region[tuple(np.rint(centroids[found]).astype(int).T)]]
     found = found[np.argsort(-areas[found], kind="stable")][:MAX_CANDIDATES]
     numbered = np.zeros(count, np.int32)
     numbered[found] = np.arange(1, len(found) + 1)
