@@ -100,9 +100,9 @@ def pairs(lines: NDArray[np.float64], shortest: float, longest: float) -> NDArra
     return np.stack([i, j], axis=1)[(distance >= shortest) & (distance <= longest)]
 
 
-def integral(mask: Mask) -> NDArray[np.int32]:
+def integral(mask: NDArray) -> NDArray[np.int32]:
     """(H + 1, W + 1) sums over all pixels above and to the left."""
-    return np.asarray(cv2.integral(mask.view(np.uint8)), np.int32)
+    return np.asarray(cv2.integral(mask.astype(np.uint8)), np.int32)
 
 
 def box_sums(sums: NDArray[np.int32], boxes: NDArray[np.int64]) -> NDArray[np.int32]:
