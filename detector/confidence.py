@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from detector.candidates import Boxes, Scene, Steps, steps
+from detector.candidates import Boxes, Scene
 from detector.result import Candidate, Door, DoorSearch, Evidence
+from detector.steps import Steps, steps
 
 BIAS = -14.06
 WEIGHTS = Evidence(

@@ -13,12 +13,10 @@ from detector.candidates import (
     OVERSHOOT,
     Boxes,
     Scene,
-    boarded,
     door_boxes,
     inner_shares,
     overshoot,
     side_support,
-    steps,
     surroundings,
 )
 from detector.dominance import Dominance, dominance
@@ -31,6 +29,7 @@ from detector.rectangles import find_lines
 from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rectangle, WallArea
 from detector.selection import covers, frames, smallest
 from detector.sill import hangs
+from detector.steps import boarded, steps
 
 LINE_SHARE = 0.45
 """Share of the window that a line covers at least: of the shortest side of a door, with occlusion."""
@@ -181,7 +180,7 @@ def _stand_alone(
     """
     closed = (support.min(axis=1) > CLEAR_SUPPORT) & (feet.min(axis=1) > CLEAR_SUPPORT)
     closed &= boxes.top * scene.merged.pixel_size > OVERSHOOT  # a plank goes up to the ceiling
-    closed[closed] = overshoot(boxes[closed], scene)[1] < MAX_OVERSHOOT
+    closed[closed] = overshoot(boxes[closed], scene) < MAX_OVERSHOOT
     for i in np.flatnonzero(closed)[np.argsort(-support[closed].sum(axis=1), kind="stable")][JUDGED:]:
         closed[i] = False
     for i in np.flatnonzero(closed & in_wall):

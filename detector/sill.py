@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.candidates import SAME_COLOUR, SAME_DEPTH, Boxes, Scene, median_colour
+from detector.candidates import Boxes, Scene
+from detector.steps import SAME_COLOUR, SAME_DEPTH, median_colour
 
 SILL = 0.045
 """Height of the strip just above the floor [m]."""

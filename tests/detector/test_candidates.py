@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.candidates import Boxes, Scene, boarded, overshoot, side_support
+from detector.candidates import Boxes, Scene, overshoot, side_support
 from detector.doors import fainter_doors
 from detector.edges import Edges
 from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.result import Candidate, Rectangle
+from detector.steps import boarded
 from tests.detector.conftest import plain_image
 
 SHAPE = (260, 300)
@@ -46,10 +47,9 @@ def test_a_top_that_ends_before_the_sides_is_that_of_a_pane() -> None:
     np.testing.assert_allclose(side_support(DOOR, scene(lines), DetectorParameters())[2], [[1, 1]])
 
 
-def test_the_outline_of_a_door_ends_at_its_corners_and_the_joint_of_a_plank_goes_on() -> None:
-    plank = np.s_[:, 100]
-    uprights, levels = overshoot(DOOR, scene((plank, RIGHT, TOP)))
-    np.testing.assert_allclose((uprights, levels), ((1.0,), (0.0,)))
+def test_the_head_of_a_door_ends_at_its_corners_and_a_joint_of_tiles_goes_on() -> None:
+    np.testing.assert_allclose(overshoot(DOOR, scene((LEFT, RIGHT, TOP))), [0.0])
+    np.testing.assert_allclose(overshoot(DOOR, scene((LEFT, RIGHT, np.s_[60, :]))), [1.0])
 
 
 def test_boards_differ_from_one_to_the_next_and_tiles_in_both_directions() -> None:
