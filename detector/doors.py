@@ -73,12 +73,12 @@ def find_doors(
     hidden = occluders(merged, seen, edges)
     visible = ((seen == Visibility.DATA) | (seen == Visibility.THROUGH)) & ~hidden
     open_to_view = ((seen != Visibility.SHADOWED) & ~hidden)[:lowest]
-
-    wall = Scene(merged, seen, edges, area.mask, face, visible, floor_row, lowest, parameters.max_protrusion)
+    wall = area.mask & ~edges.sloping  # a leaf of the wall's colour is near its plane beside the hinge
+    looked_at = Scene(merged, seen, edges, wall, face, visible, floor_row, lowest, parameters.max_protrusion)
 
     def search(upright: Mask, level: Mask, faint: bool) -> tuple[tuple[Candidate, ...], Scene, tuple[NDArray, NDArray]]:
         found = replace(edges, upright=upright & ~hidden, level=level & ~hidden)
-        scene = replace(wall, edges=found)
+        scene = replace(looked_at, edges=found)
         lines = (
             find_lines(
                 found.upright[:lowest], 0, round(parameters.min_height / px), LINE_SHARE, MAX_LINES, open_to_view

@@ -34,6 +34,8 @@ BESIDE_WALL = 0.02
 """A leaf whose face is closer to the wall's has the wall itself in its way [m]."""
 SAME_PLANE = 0.01
 """Points of a leaf's face lie this close to its depth, those of its edges do not [m]: three sigma."""
+MAX_COVER = 0.04
+"""A leaf covers the wall round its hole by no more than this [m]."""
 END = 0.05
 """The density of a leaf's points is measured over this length from its edge, and its end looked for as far [m]."""
 LEAST_POINTS = 30
@@ -81,7 +83,9 @@ def find_slide(
             continue
         place = outline.right - edge * px if to_right else outline.left + edge * px
         if plane > 0:
-            return _before_wall(outline, place, to_right, _face(points, outline, plane))
+            above = np.s_[max(int((height - outline.top - END) / px), 0) : rows.stop, max(first, 0) : last]
+            hole_top = height - (above[0].start + _rows_of_wall(merged.depth[above][turn][:, edge:])) * px
+            return _before_wall(outline, place, hole_top, to_right, _face(points, outline, plane))
         gap = place - outline.left if to_right else outline.right - place
         return Slide(outline, gap if to_right else -gap)
     return None
@@ -100,6 +104,12 @@ def _free_edge(seen: Image, px: float) -> int | None:
     if min(is_leaf[:edge].mean(), gap.mean()) < CONTIGUOUS or gap[-max(2, round(STILE / px)) :].mean() < 0.5:
         return None
     return edge
+
+
+def _rows_of_wall(depth: NDArray[np.float32]) -> int:
+    """Rows (H, W) from the top that show the wall's face; below it, the soffit lies deeper and is seen at a slant."""
+    face = (depth > -BESIDE_WALL).mean(axis=1) > 0.5  # False for NaN
+    return int((~face).argmax())
 
 
 def _plane(depth: NDArray[np.float32], px: float) -> float | None:
@@ -123,11 +133,12 @@ def _face(points: NDArray[np.float32], outline: Rectangle, plane: float) -> NDAr
     return points[near, :2]
 
 
-def _before_wall(outline: Rectangle, place: float, to_right: bool, face: NDArray[np.float32]) -> Slide:
-    """The slide of a leaf that is seen as a whole: its width is the doorway's, measured from the far side of the hole.
+def _before_wall(outline: Rectangle, place: float, hole_top: float, to_right: bool, face: NDArray[np.float32]) -> Slide:
+    """The slide of a leaf that is seen as a whole: closed, it covers the hole, by as much at the far side as above.
 
     Args:
         place: Of the leaf's free edge along u [m].
+        hole_top: Height of the hole [m].
         face: (N, 2) points of the leaf's face along u and v [m].
     """
     below = face[face[:, 1] < outline.top - NEAR_EDGE, 0]
@@ -137,8 +148,12 @@ def _before_wall(outline: Rectangle, place: float, to_right: bool, face: NDArray
         left, right = -_end(-below, -outline.left), _end(below, place)
     top = _end(face[(face[:, 0] > left) & (face[:, 0] < right), 1], outline.top)
     gap = left - outline.left if to_right else outline.right - right
-    width = gap if gap >= ALL_OPEN * (right - left) else right - left
-    sides = (outline.left, outline.left + width) if to_right else (outline.right - width, outline.right)
+    is_beside = gap >= ALL_OPEN * (right - left)
+    width = gap if is_beside else right - left
+    cover = 0.0 if is_beside else float(np.clip(top - hole_top, 0, MAX_COVER))
+    gap += cover
+    start, end = outline.left - cover, outline.right + cover
+    sides = (start, start + width) if to_right else (end - width, end)
     return Slide(Rectangle(sides[0], outline.bottom, sides[1], top), gap if to_right else -gap)
 
 

@@ -45,16 +45,15 @@ def described(*panels: tuple[Rectangle, float], outline: Rectangle = HOLE) -> Do
 
 @pytest.mark.parametrize("to_right", [False, True])
 def test_a_leaf_before_the_wall_gives_the_doorway_its_own_width(to_right: bool) -> None:
-    # 1.0 m wide and slid by 0.4 m: of the hole 0.4 m are open; closed it covers 1.0 m from the hole's far side
-    left = 1.9 if to_right else 1.0
-    leaf = Rectangle(left, 0.0, left + 1.0, 2.1)
-    outline = Rectangle(1.5, 0.0, 2.9, 2.1) if to_right else Rectangle(1.0, 0.0, 2.4, 2.1)
+    # closed it covers the hole of 0.9 x 2 m by 2 cm on each side and above; it slid by 0.4 m
+    left = 1.88 if to_right else 1.08
+    leaf = Rectangle(left, 0.0, left + 0.94, 2.02)
+    outline = Rectangle(1.5, 0.0, 2.82, 2.02) if to_right else Rectangle(1.08, 0.0, 2.4, 2.02)
     slide = find_slide(*seen(outline, (leaf, 0.05)))
     assert slide is not None and not slide.is_beside
-    assert slide.way == pytest.approx(0.4 if to_right else -0.4, abs=0.003)
-    sides = (1.5, 2.5) if to_right else (1.4, 2.4)
-    assert (slide.doorway.left, slide.doorway.right) == pytest.approx(sides, abs=0.005)
-    assert slide.doorway.top == pytest.approx(2.1, abs=0.005)
+    assert slide.way == pytest.approx(0.4 if to_right else -0.4, abs=0.005)
+    assert (slide.doorway.left, slide.doorway.right) == pytest.approx((1.48, 2.42), abs=0.006)
+    assert slide.doorway.top == pytest.approx(2.02, abs=0.005)
 
 
 @pytest.mark.parametrize(("depth", "left"), [(-0.06, 1.8), (-0.17, 1.8), (-0.06, 1.2)])
@@ -104,11 +103,11 @@ def test_what_slopes_does_not_slide() -> None:
 
 @pytest.mark.parametrize("depths", [(0.05, 0.01), (-0.05, -0.09)])
 def test_a_sliding_door_half_open_is_found_as_one(depths: tuple[float, float]) -> None:
-    # a leaf of 0.92 m, 0.45 m to the right of where it covers a hole of 0.9 m, before the wall or in it
+    # a leaf of 0.92 m, 0.45 m to the right of where it covers a hole of 0.9 m by 1 cm, before the wall or in it
     near, far = depths
     leaf = Box((2.94 + 0.46, 1.025, (near + far) / 2), (0.46, 1.025, (near - far) / 2), (0.3, 0.4, 0.6))
     hole = DoorSpec(left=2.5, height=2.03, has_leaf=False)
     (door,) = detect_doors(make_room(Layout(doors=[hole], extra=[leaf]), step_deg=STEP_DEG), COARSE)[0].doors
     assert (door.kind, door.state) == ("sliding", "semi-open")
     assert door.opened_fraction == pytest.approx(0.49, abs=0.03)
-    assert (door.rectangle.left, door.rectangle.right) == pytest.approx((2.5, 3.41), abs=0.025)  # two pixels
+    assert (door.rectangle.left, door.rectangle.right) == pytest.approx((2.49, 3.41), abs=0.025)  # two pixels
