@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from detector.edges import FLAT, Edges
 from detector.openings import Visibility
@@ -13,8 +14,9 @@ NEARER = 0.1
 """What is nearer than this to the room and does not slope is no leaf [m]: one at 6 deg, 0.95 m wide, is nearer."""
 BEFORE = 0.04
 """What stands out further than frames and skirting, and is set off on both sides, is no leaf [m]."""
-SET_OFF = 0.02
-"""Step to either side of what is set off [m]; a leaf leaves the wall's plane at its hinge by degrees."""
+SET_OFF, BORDER = 0.02, 0.015
+"""Step to either side of what is set off, over twice this width [m]; a leaf leaves the wall's plane at its hinge by
+degrees."""
 LOOSE = 0.3
 """Least share of its height over which a leaf hangs on the wall, and of a shadow's rim that it borders on."""
 LEAF_EDGE = 0.15
@@ -51,31 +53,37 @@ def _grown(mask: Mask, way: float, pixel_size: float) -> Mask:
 
 def _loose(merged: Orthoimage, holes: Mask) -> Mask:
     """(H, W) what stands before the wall without hanging on it by a side: curtains with their folds, for one."""
-    depth = np.nan_to_num(merged.depth, nan=0.0)
-    before = depth > BEFORE
+    before = np.nan_to_num(merged.depth, nan=0.0) > BEFORE
     if not before.any():
         return before
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(before.astype(np.uint8), connectivity=4)
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(before.view(np.uint8), connectivity=4)
     height = stats[:, cv2.CC_STAT_HEIGHT]
-    kept = height * merged.pixel_size > TALL
-    kept[0] = False
-    reach = 3
-    for sign in (1, -1):  # pixels whose neighbour towards one side lies lower: the border there
-        outside = np.roll(before, sign, axis=1)
-        rows, columns = np.nonzero(before & ~outside)
-        further, inner = (np.clip(columns - sign * way, 0, depth.shape[1] - 1) for way in (reach, -reach))
-        smooth = np.isfinite(merged.depth[rows, further]) & (depth[rows, inner] - depth[rows, further] < SET_OFF)
-        kept &= np.bincount(labels[rows, columns], smooth, count) < LOOSE * height
-    for number in np.flatnonzero(kept):
-        left, top, width, tall = stats[number, :4]
-        part = np.s_[top : top + tall, max(left - 2, 0) : left + width + 2]
-        own = labels[part] == number
-        u = np.nonzero(own)[1] * merged.pixel_size
-        slope = np.polyfit(u, depth[part][own], 1)[0] if width > 2 else 0.0
-        kept[number] = (
-            abs(slope) < FLAT and not (holes[part] & (cv2.dilate(own.view(np.uint8), np.ones((5, 5))) > 0)).any()
-        )
-    return np.asarray(kept[labels])
+    loose = height * merged.pixel_size > TALL
+    loose[0] = False
+    for side in (-1, 1):
+        rows, columns = np.nonzero(before & ~np.roll(before, -side, axis=1))
+        smooth = _leaves_by_degrees(merged, rows, columns, side)
+        loose &= np.bincount(labels[rows, columns], smooth, count) < LOOSE * height
+    beside_hole = cv2.dilate(holes.view(np.uint8), np.ones((5, 5), np.uint8)) > 0
+    loose &= np.bincount(labels[before & beside_hole], minlength=count) < LOOSE * height
+    for number in np.flatnonzero(loose).tolist():
+        loose[number] = abs(_slope(merged, labels, number, stats[number])) < FLAT
+    return np.asarray(loose[labels])
+
+
+def _leaves_by_degrees(merged: Orthoimage, rows: NDArray, columns: NDArray, side: int) -> NDArray[np.bool_]:
+    """(N,) whether the depth falls to the wall's without a step beside pixels of a border, right of them or left."""
+    reach = round(BORDER / merged.pixel_size)
+    outer, inner = (np.clip(columns + side * way, 0, merged.depth.shape[1] - 1) for way in (reach, -reach))
+    return np.asarray(merged.depth[rows, inner] - merged.depth[rows, outer] < SET_OFF)  # False for NaN
+
+
+def _slope(merged: Orthoimage, labels: NDArray, number: int, box: NDArray) -> float:
+    """Of the plane along u that fits a labelled part of the image best."""
+    left, top, width, height = box[:4]
+    part = np.s_[top : top + height, left : left + width]
+    own = labels[part] == number
+    return float(np.polyfit(np.nonzero(own)[1], merged.depth[part][own], 1)[0]) / merged.pixel_size
 
 
 def _shadows(seen: Image, sloping: Mask, holes: Mask, pixel_size: float) -> Mask:
