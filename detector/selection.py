@@ -25,6 +25,8 @@ FRAME = (0.02, 0.15)
 """Least and largest width of a frame [m]."""
 UNEVEN = 0.04
 """The sides of a frame are as wide but for this [m]: lines lie at either border of what they are."""
+SAME_LINE = 0.015
+"""Clear and faint readings of one side differ by less than this [m]."""
 DECORATION = 0.2
 """A rectangle whose weakest side has this much less support than that of the one round it is part of its decoration."""
 
@@ -98,10 +100,12 @@ def _decorates(inner: Candidate, outer: Candidate) -> bool:
 
 
 def frames(outer: Candidate, inner: Candidate) -> bool:
-    """Whether one rectangle is the outline of the frame of another: as wide above as on both sides."""
+    """Whether one rectangle takes in the frame of another: all of it, as wide above as on both sides, or its head."""
     a, b = outer.rectangle, inner.rectangle
-    widths = (b.left - a.left, a.right - b.right, a.top - b.top)
-    return FRAME[0] < min(widths) and max(widths) < FRAME[1] and max(widths) - min(widths) < UNEVEN
+    sides, above = (b.left - a.left, a.right - b.right), a.top - b.top
+    widths = (*sides, above)
+    is_head = max(map(abs, sides)) < SAME_LINE and FRAME[0] < above < FRAME[1]
+    return is_head or (FRAME[0] < min(widths) and max(widths) < FRAME[1] and max(widths) - min(widths) < UNEVEN)
 
 
 def covers(a: Candidate, b: Candidate) -> bool:
