@@ -89,8 +89,22 @@ def wood(rng: np.random.Generator, colour: Colour, variation: float = 0.12) -> F
 
 def glossy(rng: np.random.Generator, finish: Finish) -> Finish:
     """Gloss paint, lacquer or glaze: highlights of the flash cover some 8 cm2 to 0.27 m2 of a wall (section 7.4)."""
-    spread = float(rng.uniform(0.14**4, 0.28**4))  # the area of a highlight grows like roughness^4
-    return replace(finish, specular=float(rng.uniform(0.2, 0.45)), roughness=spread**0.25)
+    return replace(finish, specular=float(rng.uniform(0.2, 0.45)), roughness=_roughness(rng, 0.28))
+
+
+def lacquer(rng: np.random.Generator, finish: Finish) -> Finish:
+    """A smooth coat, whose highlights are overexposed.
+
+    Its surface reflects 4 % of the light (Fresnel, index 1.5) in a Blinn-Phong lobe, which conserves energy if it is
+    (n + 8) / 8 * 4 % of a white diffuser high, for an exponent n; some of the coat is dull.
+    """
+    roughness = _roughness(rng, 0.26)
+    return replace(finish, specular=float(rng.uniform(0.5, 1.0)) * 0.04 * (2 / roughness**4 + 6) / 8, roughness=roughness)
+
+
+def _roughness(rng: np.random.Generator, largest: float) -> float:
+    """Of a gloss coat; the area of a highlight grows like its fourth power, and all areas are as likely."""
+    return float(rng.uniform(0.17**4, largest**4)) ** 0.25
 
 
 def floor(rng: np.random.Generator) -> Finish:

@@ -18,7 +18,13 @@ from mission.bench.walls.shell import skirting_finish
 _LEAF_WIDTHS = (0.62, 0.72, 0.82, 0.92, 1.02)
 
 
-def room(rng: np.random.Generator, category: str, makers: Sequence[Maker], paint: Finish | None = None) -> RoomPlan:
+def room(
+    rng: np.random.Generator,
+    category: str,
+    makers: Sequence[Maker],
+    paint: Finish | None = None,
+    places: int | None = None,
+) -> RoomPlan:
     """A room of a category whose judged walls the makers build, those that need most room first.
 
     Args:
@@ -26,29 +32,30 @@ def room(rng: np.random.Generator, category: str, makers: Sequence[Maker], paint
         category: of the judged walls.
         makers: one for each judged wall, three or four.
         paint: of its walls; None for any.
+        places: to scan from; None for 2 to 4.
     """
     corners = _outline(rng, len(makers))
     height = float(rng.uniform(2.55, 3.0))
     lengths = floor_plans.side_lengths(corners)
     judged = np.sort(np.argsort(-lengths, kind="stable")[: len(makers)])
     order = judged[np.argsort(-lengths[judged], kind="stable")]
-    count = int(rng.choice([2, 3, 4], p=[0.2, 0.5, 0.3]))
+    count = places or int(rng.choice([2, 3, 4], p=[0.2, 0.5, 0.3]))
     middle = _middle_table(rng, corners) if count > 2 and rng.random() < 0.4 else ()
-    places = floor_plans.scan_places(
+    scan_places = floor_plans.scan_places(
         *(rng, corners, count), seen=_watched(corners, judged), avoid=[(x, y, 1.25) for x, y, *_ in middle]
     )
     paint = paint or finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS))
     skirting, tall = skirting_finish(rng), float(rng.uniform(0.06, 0.11))
     walls: list[WallPlan] = []
     for side in range(len(corners)):
-        site = Site(float(lengths[side]), height, paint, _feet(corners, side, scanner_origins(places)))
+        site = Site(float(lengths[side]), height, paint, _feet(corners, side, scanner_origins(scan_places)))
         if side in judged:
             walls.append(makers[int(np.flatnonzero(order == side)[0])](rng, site))
         else:
             walls.append(blank_wall(rng, site))
     walls = [replace(wall, skirting=wall.skirting and skirting, skirting_height=tall) for wall in walls]
     ceiling = finishes.plain((0.92, 0.92, 0.91))
-    return RoomPlan(category, corners, height, tuple(walls), finishes.floor(rng), ceiling, places, middle)
+    return RoomPlan(category, corners, height, tuple(walls), finishes.floor(rng), ceiling, scan_places, middle)
 
 
 def random_door(rng: np.random.Generator, wall: Finish, *, double: bool = False) -> DoorPlan:

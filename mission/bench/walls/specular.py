@@ -2,38 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from mission.bench.walls import finishes
 from mission.bench.walls.filling import judged_wall
-from mission.bench.walls.finishes import WALL_PAINTS
+from mission.bench.walls.finishes import WALL_PAINTS, Finish
 from mission.bench.walls.interiors import lay_out, random_door, room
-from mission.bench.walls.plans import DoorPlan, Maker, RoomPlan, Site, WallPlan
+from mission.bench.walls.plans import NO_FRAME, DoorPlan, Maker, RoomPlan, Site, WallPlan
+
+TRIES = 300
+"""Layouts of a wall that are tried for a highlight across the border between door and wall."""
 
 
 def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:
     """4 doors in 3 walls of a room; the flash lights up where wall and door meet."""
-    paint = finishes.glossy(rng, finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS), 0.03))
-    return (room(rng, "specular", [_wall(2), _wall(1), _wall(1, double=bool(rng.random() < 0.5))], paint),)
+    paint = finishes.lacquer(rng, finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS), 0.03))
+    ordinary = partial(random_door, double=bool(rng.random() < 0.5))
+    return (room(rng, "specular", [_wall([random_door, _flush]), _wall([_flush]), _wall([ordinary])], paint, places=2),)
 
 
-def _wall(count: int, *, double: bool = False) -> Maker:
+def _wall(kinds: Sequence[Callable[[np.random.Generator, Finish], DoorPlan]]) -> Maker:
     def make(rng: np.random.Generator, site: Site) -> WallPlan:
-        doors = [_lacquered(random_door(rng, site.paint, double=double), rng) for _ in range(count)]
-        tries = [lay_out(rng, doors, site.length) for _ in range(60)]
+        doors = [_lacquered(kind(rng, site.paint), rng) for kind in kinds]
+        tries = [lay_out(rng, doors, site.length) for _ in range(TRIES)]
         placed = min(tries, key=lambda doors: _way_to_edge(doors, site.feet))
         return judged_wall(rng, site, placed, busy=0.4)
 
     return make
 
 
+def _flush(rng: np.random.Generator, wall: Finish) -> DoorPlan:
+    """A frameless door in the wall's plane and of its paint, a shade darker: only its colour tells where it ends."""
+    shade = -float(rng.uniform(0.02, 0.05))
+    door = replace(random_door(rng, wall), finish=finishes.shifted(wall, (shade, shade, shade)))
+    return replace(door, frame=NO_FRAME, recess=0.0, opens="inward")
+
+
 def _way_to_edge(doors: tuple[DoorPlan, ...], feet: tuple[float, ...]) -> float:
-    """Sum over the doors of the way from an edge to the nearest place that a scan place stands square to [m]."""
-    return sum(min(abs(edge - foot) for edge in (door.left, door.right) for foot in feet) for door in doors)
+    """Sum over the doors of the way from an edge to the nearest place that a scan place stands square to [m].
+
+    A door that stands out from the wall counts little: its sides show under any highlight.
+    """
+    ways = [min(abs(edge - foot) for edge in (door.left, door.right) for foot in feet) for door in doors]
+    return sum(way * (1.0 if door.recess == 0 else 0.1) for way, door in zip(ways, doors, strict=True))
 
 
 def _lacquered(door: DoorPlan, rng: np.random.Generator) -> DoorPlan:
-    frame = replace(door.frame, finish=finishes.glossy(rng, door.frame.finish))
-    return replace(door, finish=finishes.glossy(rng, door.finish), frame=frame, panel="flat")
+    frame = replace(door.frame, finish=finishes.lacquer(rng, door.frame.finish))
+    return replace(door, finish=finishes.lacquer(rng, door.finish), frame=frame, panel="flat")
