@@ -98,7 +98,7 @@ def lacquer(rng: np.random.Generator, finish: Finish) -> Finish:
     Its surface reflects 4 % of the light (Fresnel, index 1.5) in a Blinn-Phong lobe, which conserves energy if it is
     (n + 8) / 8 * 4 % of a white diffuser high, for an exponent n; some of the coat is dull.
     """
-    roughness = _roughness(rng, 0.26)
+    roughness = _roughness(rng, 0.25)
     return replace(finish, specular=float(rng.uniform(0.5, 1.0)) * 0.04 * (2 / roughness**4 + 6) / 8, roughness=roughness)
 
 

@@ -13,6 +13,7 @@ from mission.bench.walls.filling import judged_wall
 from mission.bench.walls.finishes import WALL_PAINTS, Finish
 from mission.bench.walls.interiors import lay_out, random_door, room
 from mission.bench.walls.plans import NO_FRAME, DoorPlan, Maker, RoomPlan, Site, WallPlan
+from sim.camera import FLASH
 
 TRIES = 300
 """Layouts of a wall that are tried for a highlight across the border between door and wall."""
@@ -37,17 +38,19 @@ def _wall(kinds: Sequence[Callable[[np.random.Generator, Finish], DoorPlan]]) ->
 
 def _flush(rng: np.random.Generator, wall: Finish) -> DoorPlan:
     """A frameless door in the wall's plane and of its paint, a shade darker: only its colour tells where it ends."""
-    shade = -float(rng.uniform(0.02, 0.05))
+    shade = -float(rng.uniform(0.015, 0.03))
     door = replace(random_door(rng, wall), finish=finishes.shifted(wall, (shade, shade, shade)))
-    return replace(door, frame=NO_FRAME, recess=0.0, opens="inward")
+    return replace(door, frame=NO_FRAME, recess=0.0, gap=0.0005, opens="inward")
 
 
 def _way_to_edge(doors: tuple[DoorPlan, ...], feet: tuple[float, ...]) -> float:
-    """Sum over the doors of the way from an edge to the nearest place that a scan place stands square to [m].
+    """Sum over the doors of the way from an edge to the nearest middle of a highlight [m].
 
-    A door that stands out from the wall counts little: its sides show under any highlight.
+    That lies halfway between the places that the lens and the flash beside it stand square to. A door that stands out
+    from the wall counts little: its sides show under any highlight.
     """
-    ways = [min(abs(edge - foot) for edge in (door.left, door.right) for foot in feet) for door in doors]
+    middles = [foot + FLASH[0] / 2 for foot in feet]
+    ways = [min(abs(edge - middle) for edge in (door.left, door.right) for middle in middles) for door in doors]
     return sum(way * (1.0 if door.recess == 0 else 0.1) for way, door in zip(ways, doors, strict=True))
 
 
