@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.highlights import bounding_box, repaired
-from detector.lobes import BRIDGE, SMALLEST, Floats, lobes, outlines
+from detector.lobes import BRIDGE, SMALLEST, Floats, Gloss, lobes, outlines
 from detector.parallel import each
 from detector.parameters import DetectorParameters
 from detector.result import Highlights, Image, Mask, Orthoimage
@@ -57,6 +57,8 @@ class _Cells:
     where something may lie deeper, and not too oblique."""
     angle: Floats
     """(h, w) incidence [rad]."""
+    foot: tuple[float, float]
+    """Row and column of the foot of the perpendicular from the camera."""
     distance: float
     """Of the camera from the wall, in cells."""
     area: float
@@ -97,7 +99,9 @@ def _settled(
     glossy, told = np.zeros(own.known.shape, np.float32), np.zeros(own.known.shape, np.uint8)
     levels, sees = _gloss(k, cells, box, parameters)
     told[box] = sees
-    glossy[box] = lobes(levels, own.angle[box], own.distance, own.area, parameters)
+    foot = own.foot[0] - box[0].start, own.foot[1] - box[1].start
+    white = own.shown[box].min(axis=2) >= WHITE
+    glossy[box] = lobes(Gloss(levels, white, own.angle[box], foot, own.distance, own.area), parameters)
     size = found.regions.shape[1], found.regions.shape[0]
     regions = cv2.resize(glossy, size, interpolation=cv2.INTER_LINEAR) > 0.5
     contours = outlines(regions)
@@ -152,6 +156,7 @@ def _cells(
         known=known,
         telling=inner & (_largest(np.asarray(shown)) < WHITE) & (angle < OBLIQUE),
         angle=angle,
+        foot=((height - float(camera[1])) / side[1] - 0.5, float(camera[0]) / side[0] - 0.5),
         distance=abs(float(camera[2])) / side[0],
         area=side[0] * side[1],
     )

@@ -7,6 +7,7 @@ stands out and is seen elsewhere from there, has no such shape.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import product
 
 import cv2
@@ -27,71 +28,86 @@ SHEEN = 10.0
 """Exponent of a lobe that is at half its height 20 deg from its middle. A wider one is the sheen of matt paint."""
 SHAPE = 0.5
 """Least correlation of a highlight with a lobe."""
+CENTRE = 0.06
+"""Largest incidence at the middle of a lobe, which lies halfway between the feet of lens and flash [rad]."""
 TOP = 0.8, 0.5
-"""More than the first of its height is reached by less than the second of a highlight: it is no plateau."""
+"""More than the first of its height is reached by less than the second of a highlight: it is no plateau, unless by
+overexposure."""
 BRIDGE = np.ones((5, 5), np.uint8)
 """What an edge takes out of a highlight, in cells."""
 SMALLEST = np.ones((3, 3), np.uint8)
 """The smallest highlight, in cells; what is narrower lies along an edge."""
 
 
-def lobes(levels: Floats, angle: Floats, distance: float, area: float, parameters: DetectorParameters) -> Mask:
+@dataclass(frozen=True, eq=False)
+class Gloss:
+    """What a view shows brighter than others do, in coarse pixels."""
+
+    levels: Floats
+    """(h, w) of 255."""
+    white: Mask
+    """(h, w) where all channels are overexposed, so that there may be more of it."""
+    angle: Floats
+    """(h, w) incidence [rad]."""
+    foot: tuple[float, float]
+    """Row and column of the foot of the perpendicular from the camera; may lie outside."""
+    distance: float
+    """Of the camera from the wall, in cells."""
+    area: float
+    """Of a cell [m2]."""
+
+
+def lobes(gloss: Gloss, parameters: DetectorParameters) -> Mask:
     """(h, w) lobes of gloss, high and large enough, where a flat wall mirrors the flash.
 
     Something else may touch the foot of a lobe, and is left behind further up. The parts of a highlight on both sides
     of an edge make one lobe, or two of different height.
-
-    Args:
-        levels: (h, w) of gloss, of 255.
-        angle: (h, w) incidence [rad].
-        distance: Of the camera from the wall, in cells.
-        area: Of a cell [m2].
     """
-    found = np.zeros(levels.shape, bool)
-    mirrors = angle < parameters.highlight_mirror_angle
-    bridged = np.asarray(cv2.morphologyEx(levels, cv2.MORPH_CLOSE, BRIDGE), np.float32)
-    for factor, gloss in product(HEIGHTS, (bridged, levels)):
+    found = np.zeros(gloss.levels.shape, bool)
+    mirrors = gloss.angle < parameters.highlight_mirror_angle
+    bridged = np.asarray(cv2.morphologyEx(gloss.levels, cv2.MORPH_CLOSE, BRIDGE), np.float32)
+    for factor, levels in product(HEIGHTS, (bridged, gloss.levels)):
         height = 255 * parameters.min_gloss_contrast * factor
-        if not ((gloss > FOOT * height) & mirrors).any() or gloss.max() < height:
+        if not ((levels > FOOT * height) & mirrors).any() or levels.max() < height:
             continue
-        part = cv2.morphologyEx(((gloss > FOOT * height) & ~found).view(np.uint8), cv2.MORPH_OPEN, SMALLEST)
+        part = cv2.morphologyEx(((levels > FOOT * height) & ~found).view(np.uint8), cv2.MORPH_OPEN, SMALLEST)
         count, labels = cv2.connectedComponents(part, connectivity=8)
         rows, columns = np.nonzero(part)
-        inside, shown = labels[rows, columns].astype(np.intp), gloss[rows, columns]
-        fall, agreement = _fall(rows, columns, shown.astype(np.float64), inside, count)
-        # a lobe cos^n over the angle is exp(-n angle^2 / 2), and the angle is the way over the distance
-        kept = (agreement > SHAPE) & (2 * fall * distance**2 > SHEEN)
+        inside, shown = labels[rows, columns].astype(np.intp), levels[rows, columns]
         size = np.bincount(inside, minlength=count)
-        kept &= size * area >= parameters.min_highlight_area
         peak = np.zeros(count, np.float32)
         np.maximum.at(peak, inside, shown)
-        kept &= (peak >= height) & (np.bincount(inside, shown > TOP[0] * peak[inside], count) < TOP[1] * size)
+        top = (shown > TOP[0] * peak[inside]) & ~gloss.white[rows, columns]
+        kept = (size * gloss.area >= parameters.min_highlight_area) & (peak >= height)
+        kept &= np.bincount(inside, top, count) < TOP[1] * size
         kept &= np.bincount(inside, mirrors[rows, columns], count) > 0
+        for number in np.flatnonzero(kept):
+            one = inside == number
+            kept[number] = _is_lobe(rows[one], columns[one], shown[one], gloss)
         found[rows, columns] |= kept[inside]
     return cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_CLOSE, BRIDGE) > 0
 
 
-def _fall(
-    rows: NDArray[np.intp], columns: NDArray[np.intp], levels: NDArray[np.float64], labels: NDArray, count: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """How the gloss of each region falls off from its middle, exp(-fall r^2) [1/cells^2], and how well (correlation).
+def _is_lobe(rows: NDArray[np.intp], columns: NDArray[np.intp], levels: Floats, gloss: Gloss) -> bool:
+    """Whether the gloss of a region is a lobe round the foot of the perpendicular, or a part of one.
+
+    A lobe cos^n over the angle is exp(-n angle^2 / 2), and the angle is the way over the distance: the logarithm of the
+    levels is a paraboloid, wherever the region was cut out of it.
 
     Args:
-        rows: (N,) of the cells of all regions.
+        rows: (N,) of its cells.
         columns: (N,) likewise.
         levels: (N,) of gloss, above 0.
-        labels: (N,) number of the region, below `count`.
     """
-
-    def total(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.bincount(labels, values, count).astype(np.float64)
-
-    size, weight = np.maximum(np.bincount(labels, minlength=count), 1), np.maximum(total(levels**2), 1e-9)
-    row, column = ((total(levels**2 * axis) / weight)[labels] for axis in (rows, columns))
-    squares = (rows - row) ** 2 + (columns - column) ** 2
-    x, y = (values - (total(values) / size)[labels] for values in (squares, -np.log(levels)))
-    common, spread = total(x * y), np.maximum(total(x * x), 1e-9)
-    return common / spread, common / np.sqrt(spread * np.maximum(total(y * y), 1e-9))
+    x, y = (columns - gloss.foot[1]) / gloss.distance, (rows - gloss.foot[0]) / gloss.distance
+    terms = np.column_stack([np.ones_like(x), x, y, x * x + y * y])
+    logarithms = np.log(levels.astype(np.float64))
+    solution = np.linalg.lstsq(terms, logarithms, rcond=None)[0]
+    _, across, down, bend = solution.tolist()
+    left = logarithms - terms @ solution
+    agreement = 1 - left.var() / max(logarithms.var(), 1e-9)
+    off_centre = np.hypot(across, down) / max(-2 * bend, 1e-9)
+    return bool(-2 * bend > SHEEN and agreement > SHAPE**2 and off_centre < CENTRE)
 
 
 def outlines(regions: Mask) -> tuple[NDArray[np.float64], ...]:

@@ -99,7 +99,7 @@ def lacquer(rng: np.random.Generator, finish: Finish) -> Finish:
     (n + 8) / 8 * 4 % of a white diffuser high, for an exponent n; some of the coat is dull.
     """
     roughness = _roughness(rng, 0.25)
-    return replace(finish, specular=float(rng.uniform(0.5, 1.0)) * 0.04 * (2 / roughness**4 + 6) / 8, roughness=roughness)
+    return replace(finish, specular=float(rng.uniform(0.75, 1.0)) * 0.04 * (2 / roughness**4 + 6) / 8, roughness=roughness)
 
 
 def _roughness(rng: np.random.Generator, largest: float) -> float:
