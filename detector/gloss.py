@@ -32,6 +32,8 @@ EDGE = 24
 """Difference within two cells from which on there is an edge, which registration may move [levels]."""
 WHITISH = 0.25
 """Gloss brightens each channel by this part of the mean at least: a channel that is bright anyway shows less of it."""
+NEARBY = 0.10
+"""What stands out casts its shadow, and what slopes up to there is lit otherwise, within this [m]."""
 HARDWARE = 0.04, 0.01
 """What is narrower than the first and stands out by more than the second, a handle, is seen elsewhere by others [m]."""
 AROUND = 0.15
@@ -148,7 +150,9 @@ def _cells(
     depth = np.asarray(cv2.resize(photographed.depth, size, interpolation=cv2.INTER_NEAREST), np.float32)
     known = cv2.medianBlur((whole & ~_stands_out(depth, side[0], parameters)).view(np.uint8), 3) > 0
     brightest, darkest = cv2.dilate(colour, BRIDGE), cv2.erode(colour, BRIDGE)
-    inner = cv2.erode(known.view(np.uint8), SMALLEST) > 0
+    reach = np.ones((1 + 2 * round(NEARBY / side[0]),) * 2, np.uint8)
+    furniture = cv2.morphologyEx((depth > parameters.slab_face).view(np.uint8), cv2.MORPH_OPEN, SMALLEST)
+    inner = (cv2.erode(known.view(np.uint8), SMALLEST) > 0) & (cv2.dilate(furniture, reach) == 0)
     return _Cells(
         shown=np.asarray(shown, np.uint8),
         colour=np.asarray(colour, np.uint8),

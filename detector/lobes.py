@@ -26,10 +26,12 @@ HEIGHTS = 1.0, 2.0, 4.0
 """Least heights of highlights that are looked for one after the other, in parts of the least contrast."""
 SHEEN = 10.0
 """Exponent of a lobe that is at half its height 20 deg from its middle. A wider one is the sheen of matt paint."""
-SHAPE = 0.5
-"""Least correlation of a highlight with a lobe."""
+SHAPE = 0.25
+"""Least share of the variance of a highlight that a lobe explains."""
 CENTRE = 0.06
 """Largest incidence at the middle of a lobe, which lies halfway between the feet of lens and flash [rad]."""
+CLEAR, AJAR = 0.8, 0.12
+"""A lobe that explains more than the first may have its middle up to the second away [rad]: on a door that is ajar."""
 TOP = 0.8, 0.5
 """More than the first of its height is reached by less than the second of a highlight: it is no plateau, unless by
 overexposure."""
@@ -104,10 +106,10 @@ def _is_lobe(rows: NDArray[np.intp], columns: NDArray[np.intp], levels: Floats, 
     logarithms = np.log(levels.astype(np.float64))
     solution = np.linalg.lstsq(terms, logarithms, rcond=None)[0]
     _, across, down, bend = solution.tolist()
-    left = logarithms - terms @ solution
-    agreement = 1 - left.var() / max(logarithms.var(), 1e-9)
+    freedom = max(len(levels) - terms.shape[1], 1) / max(len(levels) - 1, 1)
+    explained = 1 - (logarithms - terms @ solution).var() / max(logarithms.var() * freedom, 1e-9)
     off_centre = np.hypot(across, down) / max(-2 * bend, 1e-9)
-    return bool(-2 * bend > SHEEN and agreement > SHAPE**2 and off_centre < CENTRE)
+    return bool(-2 * bend > SHEEN and explained > SHAPE and off_centre < (AJAR if explained > CLEAR else CENTRE))
 
 
 def outlines(regions: Mask) -> tuple[NDArray[np.float64], ...]:

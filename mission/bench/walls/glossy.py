@@ -33,8 +33,9 @@ HARDWARE = 0.042, 0.004
 HANDLE = 0.02, 0.06
 """What stands out by the first, narrow as it is, is a handle, and gloss that lies within the second of one for the more
 part is its plate [m]."""
-NARROW = 0.025
-"""What is narrower is a glint on an edge or a strip of metal; the smallest highlight, as a disc, is 32 mm wide [m]."""
+NARROW = 0.032
+"""What is narrower than the smallest highlight, as a disc, is a glint on an edge or a strip of metal, such as a picture's
+frame or the plate of a handle [m]."""
 
 
 @dataclass(frozen=True)
