@@ -30,8 +30,10 @@ SHAPE = 0.25
 """Least share of the variance of a highlight that a lobe explains."""
 CENTRE = 0.06
 """Largest incidence at the middle of a lobe, which lies halfway between the feet of lens and flash [rad]."""
-CLEAR, AJAR = 0.8, 0.12
-"""A lobe that explains more than the first may have its middle up to the second away [rad]: on a door that is ajar."""
+AJAR = 0.12
+"""The same on a door that is ajar, where a lobe must be large and clear [rad]."""
+LARGE, CLEAR = 0.01, 0.8
+"""A lobe of this area that explains more than this share is large and clear [m2, of 1]."""
 TOP = 0.8, 0.5
 """More than the first of its height is reached by less than the second of a highlight: it is no plateau, unless by
 overexposure."""
@@ -109,7 +111,8 @@ def _is_lobe(rows: NDArray[np.intp], columns: NDArray[np.intp], levels: Floats, 
     freedom = max(len(levels) - terms.shape[1], 1) / max(len(levels) - 1, 1)
     explained = 1 - (logarithms - terms @ solution).var() / max(logarithms.var() * freedom, 1e-9)
     off_centre = np.hypot(across, down) / max(-2 * bend, 1e-9)
-    return bool(-2 * bend > SHEEN and explained > SHAPE and off_centre < (AJAR if explained > CLEAR else CENTRE))
+    obvious = explained > CLEAR and len(levels) * gloss.area > LARGE
+    return bool(-2 * bend > SHEEN and explained > SHAPE and off_centre < (AJAR if obvious else CENTRE))
 
 
 def outlines(regions: Mask) -> tuple[NDArray[np.float64], ...]:
