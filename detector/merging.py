@@ -24,6 +24,8 @@ CORE_ANGLE = 0.25
 """Incidence beyond which a view that is glossy, too, is still better than inpainting [rad]: 13 % of that lobe."""
 OWN_PART = np.exp(-0.5 * (np.arange(256, dtype=np.float32) / 255 / GLOSS) ** 2)
 """How much a view keeps of its own colour, by how many levels it is brighter than the matt one."""
+FEATHER = 0.03
+"""Half the width of the border round a highlight over which its view comes in again [m]."""
 ENOUGH = 500
 """Pixels that two views are compared on at least."""
 SAMPLES = 20_000
@@ -51,6 +53,7 @@ def matt_colours(
     reflection components", 1985), and gloss adds to every channel. Within a view's region of interest, a pixel that is
     brighter in all channels than in a more oblique view, further out on its lobe, takes the colour of that one,
     brought to the brightness that this view has round its highlight. So no step appears where the replacement ends.
+    A highlight itself is replaced as a whole: where it is overexposed, a channel may be too dark.
 
     Args:
         images: Views of even light, as they were before highlights were filled in.
@@ -87,14 +90,21 @@ def _matt(
         return colour, guessed
     red, green, blue = cv2.split(cv2.subtract(own, matt))  # not below 0
     gloss = np.minimum(np.minimum(red, green), blue)
-    filled = cv2.dilate(found.regions[box].astype(np.uint8), np.ones((5, 5), np.uint8)) > 0  # and its border
-    changed = np.flatnonzero(told & ((gloss > 2) | filled))
-    own_part = OWN_PART.take(gloss.ravel().take(changed))[:, None]
+    marked = _feathered(found.regions[box], image.pixel_size)
+    changed = np.flatnonzero(told & ((gloss > 2) | (marked > 0)))
+    own_part = (OWN_PART.take(gloss.ravel().take(changed)) * (1 - marked.ravel().take(changed)))[:, None]
     own, matt = (c.reshape(-1, 3).take(changed, axis=0) for c in (own, matt))
     view = colour[box]
     view[np.unravel_index(changed, told.shape)] = np.rint(own_part * own + (1 - own_part) * matt)
     guessed[box] &= ~told
     return colour, guessed
+
+
+def _feathered(regions: Mask, pixel_size: float) -> NDArray[np.float32]:
+    """(H, W) 1 in regions, and less and less round them until 0 at twice `FEATHER`."""
+    side = 1 + 2 * round(FEATHER / pixel_size)
+    wide = cv2.dilate(regions.view(np.uint8), np.ones((side, side), np.uint8))
+    return np.asarray(cv2.blur(wide.astype(np.float32), (side, side)), np.float32)
 
 
 def merge(

@@ -34,8 +34,8 @@ HANDLE = 0.02, 0.06
 """What stands out by the first, narrow as it is, is a handle, and gloss that lies within the second of one for the more
 part is its plate [m]."""
 NARROW = 0.032
-"""What is narrower than the smallest highlight, as a disc, is a glint on an edge or a strip of metal, such as a picture's
-frame or the plate of a handle [m]."""
+"""What is narrower than the smallest highlight, as a disc, is a glint on an edge or a strip of metal, such as the frame
+of a picture or the plate of a handle [m]."""
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,15 @@ TRIES = 300
 
 def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:
     """4 doors in 3 walls of a room; the flash lights up where wall and door meet."""
-    paint = finishes.lacquer(rng, finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS), 0.03))
-    ordinary = partial(random_door, double=bool(rng.random() < 0.5))
-    return (room(rng, "specular", [_wall([random_door, _flush]), _wall([_flush]), _wall([ordinary])], paint, places=2),)
+    plaster = finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS), 0.03)
+    paint = finishes.lacquer(rng, plaster, smoothest=0.21)  # so that a highlight is at least half as large as it may be
+    ordinary = partial(_ordinary, double=bool(rng.random() < 0.5))
+    return (room(rng, "specular", [_wall([_ordinary, _flush]), _wall([_flush]), _wall([ordinary])], paint, places=2),)
 
 
 def _wall(kinds: Sequence[Callable[[np.random.Generator, Finish], DoorPlan]]) -> Maker:
     def make(rng: np.random.Generator, site: Site) -> WallPlan:
-        doors = [_lacquered(kind(rng, site.paint), rng) for kind in kinds]
+        doors = [kind(rng, site.paint) for kind in kinds]
         tries = [lay_out(rng, doors, site.length) for _ in range(TRIES)]
         placed = min(tries, key=lambda doors: _way_to_edge(doors, site.feet))
         return judged_wall(rng, site, placed, busy=0.4)
@@ -37,10 +38,10 @@ def _wall(kinds: Sequence[Callable[[np.random.Generator, Finish], DoorPlan]]) ->
 
 
 def _flush(rng: np.random.Generator, wall: Finish) -> DoorPlan:
-    """A frameless door in the wall's plane and of its paint, a shade darker: only its colour tells where it ends."""
+    """A frameless, tight door in the wall's plane and of its paint, a shade darker: only that tells where it ends."""
     shade = -float(rng.uniform(0.015, 0.03))
     door = replace(random_door(rng, wall), finish=finishes.shifted(wall, (shade, shade, shade)))
-    return replace(door, frame=NO_FRAME, recess=0.0, gap=0.0005, opens="inward")
+    return replace(door, frame=NO_FRAME, recess=0.0, gap=0.0005, opens="inward", panel="flat")
 
 
 def _way_to_edge(doors: tuple[DoorPlan, ...], feet: tuple[float, ...]) -> float:
@@ -54,6 +55,8 @@ def _way_to_edge(doors: tuple[DoorPlan, ...], feet: tuple[float, ...]) -> float:
     return sum(way * (1.0 if door.recess == 0 else 0.1) for way, door in zip(ways, doors, strict=True))
 
 
-def _lacquered(door: DoorPlan, rng: np.random.Generator) -> DoorPlan:
+def _ordinary(rng: np.random.Generator, wall: Finish, *, double: bool = False) -> DoorPlan:
+    """Any lacquered door."""
+    door = random_door(rng, wall, double=double)
     frame = replace(door.frame, finish=finishes.lacquer(rng, door.frame.finish))
     return replace(door, finish=finishes.lacquer(rng, door.finish), frame=frame, panel="flat")
