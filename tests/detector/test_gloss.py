@@ -73,6 +73,44 @@ def test_a_highlight_across_an_edge_is_found_on_both_sides() -> None:
     assert found.regions[50, 108]
 
 
+def test_the_overexposed_top_of_a_highlight_is_a_part_of_it() -> None:
+    # 255 - 235 = 20 levels of 120 are left, wherever there were as many: up to 8 px sqrt(2 ln 6) = 15 px
+    found = compared(painted(235 + bell(120, 8)), painted(235 + bell(0, 8)))
+    assert found.regions[(RADIUS < 14) & (COLUMNS < 105)].all()  # further to the right the other view is too oblique
+    assert not found.regions[RADIUS > 3.5 * 8].any()
+
+
+def test_a_plateau_that_is_not_overexposed_is_no_highlight() -> None:
+    assert not compared(painted(200 + np.minimum(bell(120, 8), 20)), painted(200 + bell(0, 8))).regions.any()
+
+
+def test_what_furniture_leaves_of_a_highlight_is_found() -> None:
+    half = replace(painted(90 + bell(60, 12)), coloured=COLUMNS < 103)
+    found = compared(half, painted(90 + bell(0, 12)))
+    assert found.regions[(RADIUS < 12) & (COLUMNS < 100)].all()
+
+
+@pytest.mark.parametrize(
+    ("sigma", "away", "expected"),
+    [
+        pytest.param(1.5, 0, True, id="small, at the foot"),
+        pytest.param(1.5, 16, False, id="small, 16 px of 5 mrad away"),
+        pytest.param(12, 16, True, id="large, as on a door that is ajar by 5 deg"),
+        pytest.param(12, 40, False, id="large, with its skirt over the foot and its middle at 0.2 rad"),
+    ],
+)
+def test_a_lobe_has_its_middle_at_the_foot_of_the_perpendicular(sigma: float, away: float, expected: bool) -> None:
+    found = compared(painted(90 + bell(60, sigma, away)), painted(90 + bell(0, sigma)))
+    assert found.regions.any() == expected
+
+
+def test_what_is_beside_furniture_of_the_other_view_is_not_told() -> None:
+    # the other view has the lobe's right half 5 cm beside a cupboard that stands out by 10 cm, in its shadow
+    shaded = painted(np.where(COLUMNS < 105, 90.0, 60.0))
+    shaded.depth[:, 110:] = 0.1
+    assert not compared(painted(90 + bell(0, 6)), shaded).regions.any()
+
+
 def nothing() -> Mask:
     return np.zeros((100, 200), bool)
 

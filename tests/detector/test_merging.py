@@ -75,6 +75,19 @@ def spot(radius_px: float, height: float = 60.0) -> Orthoimage:
 CAMERA = np.array([1.0, 0.5, 2.0])
 
 
+def test_where_one_view_is_overexposed_the_merged_colour_is_that_of_the_other() -> None:
+    rows, columns = np.indices((100, 200))
+    disc = np.hypot(rows - 50, columns - 100) < 15
+    second = plain_image()
+    second.colour[:] = 200, 150, 120
+    first = replace(second, colour=second.colour.copy())
+    first.colour[disc] = 190  # white over a gain: red is darker than it should be
+    found = replace(highlights_of(first, disc), region_of_interest=np.ones((100, 200), bool))
+    cameras = [CAMERA, np.array([-1.5, 0.5, 1.0])]
+    merged = merge([first, second], [found, highlights_of(second)], cameras, 1.0, PARAMETERS)
+    assert np.abs(merged.colour.astype(int) - (200, 150, 120)).max() <= 1
+
+
 def test_a_gaussian_highlight_is_found_with_its_extent() -> None:
     found = find_highlights(spot(8), CAMERA, 1.0, PARAMETERS)
     assert len(found.contours) == 1 and found.regions[50, 100]

@@ -62,8 +62,6 @@ class Finish:
     """Below 0.5 it is glass, which light and laser pass."""
 
 
-SMOOTHEST = 0.17
-"""Least roughness of a gloss coat."""
 STEEL = Finish((0.62, 0.63, 0.65), specular=0.3, roughness=0.4)
 BRASS = Finish((0.70, 0.58, 0.32), specular=0.3, roughness=0.4)
 BLACK = Finish((0.12, 0.12, 0.13))
@@ -91,21 +89,21 @@ def wood(rng: np.random.Generator, colour: Colour, variation: float = 0.12) -> F
 
 def glossy(rng: np.random.Generator, finish: Finish) -> Finish:
     """Gloss paint, lacquer or glaze: highlights of the flash cover some 8 cm2 to 0.27 m2 of a wall (section 7.4)."""
-    return replace(finish, specular=float(rng.uniform(0.2, 0.45)), roughness=_roughness(rng, 0.28))
+    return replace(finish, specular=float(rng.uniform(0.2, 0.45)), roughness=_roughness(rng, 0.17, 0.28))
 
 
-def lacquer(rng: np.random.Generator, finish: Finish, *, smoothest: float = SMOOTHEST) -> Finish:
-    """A smooth coat, whose highlights are overexposed.
+def lacquer(rng: np.random.Generator, finish: Finish, *, large: bool = False) -> Finish:
+    """A smooth coat, whose highlights are overexposed: small ones or large ones, of up to 0.27 m2 seen from 4 m.
 
     Its surface reflects 4 % of the light (Fresnel, index 1.5) in a Blinn-Phong lobe, which conserves energy if it is
     (n + 8) / 8 * 4 % of a white diffuser high, for an exponent n; some of the coat is dull.
     """
-    roughness = _roughness(rng, 0.24, smoothest)
+    roughness = _roughness(rng, 0.21, 0.24) if large else _roughness(rng, 0.17, 0.21)
     height = float(rng.uniform(0.75, 1.0)) * 0.04 * (2 / roughness**4 + 6) / 8
     return replace(finish, specular=height, roughness=roughness)
 
 
-def _roughness(rng: np.random.Generator, largest: float, smallest: float = SMOOTHEST) -> float:
+def _roughness(rng: np.random.Generator, smallest: float, largest: float) -> float:
     """Of a gloss coat; the area of a highlight grows like its fourth power, and all areas are as likely."""
     return float(rng.uniform(smallest**4, largest**4)) ** 0.25
 

@@ -22,7 +22,7 @@ TRIES = 300
 def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:
     """4 doors in 3 walls of a room; the flash lights up where wall and door meet."""
     plaster = finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS), 0.03)
-    paint = finishes.lacquer(rng, plaster, smoothest=0.21)  # so that a highlight is at least half as large as it may be
+    paint = finishes.lacquer(rng, plaster, large=True)
     ordinary = partial(_ordinary, double=bool(rng.random() < 0.5))
     return (room(rng, "specular", [_wall([_ordinary, _flush]), _wall([_flush]), _wall([ordinary])], paint, places=2),)
 
@@ -38,10 +38,14 @@ def _wall(kinds: Sequence[Callable[[np.random.Generator, Finish], DoorPlan]]) ->
 
 
 def _flush(rng: np.random.Generator, wall: Finish) -> DoorPlan:
-    """A frameless, tight door in the wall's plane and of its paint, a shade darker: only that tells where it ends."""
-    shade = -float(rng.uniform(0.015, 0.03))
+    """A frameless, tight door in the wall's plane and of its paint, a shade darker: only that tells where it ends.
+
+    It is low, so that a highlight hides much of a side.
+    """
+    shade = -float(rng.uniform(0.015, 0.025))
     door = replace(random_door(rng, wall), finish=finishes.shifted(wall, (shade, shade, shade)))
-    return replace(door, frame=NO_FRAME, recess=0.0, gap=0.0005, opens="inward", panel="flat")
+    height = float(rng.uniform(1.96, 2.02))
+    return replace(door, height=height, frame=NO_FRAME, recess=0.0, gap=0.0005, opens="inward", panel="flat")
 
 
 def _way_to_edge(doors: tuple[DoorPlan, ...], feet: tuple[float, ...]) -> float:
