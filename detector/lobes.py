@@ -51,6 +51,8 @@ class Gloss:
     """(h, w) of 255."""
     white: Mask
     """(h, w) where all channels are overexposed, so that there may be more of it."""
+    untold: Mask
+    """(h, w) where this view shows the wall, and no other can tell."""
     angle: Floats
     """(h, w) incidence [rad]."""
     foot: tuple[float, float]
@@ -65,7 +67,7 @@ def lobes(gloss: Gloss, parameters: DetectorParameters) -> Mask:
     """(h, w) lobes of gloss, high and large enough, where a flat wall mirrors the flash.
 
     Something else may touch the foot of a lobe, and is left behind further up. The parts of a highlight on both sides
-    of an edge make one lobe, or two of different height.
+    of an edge make one lobe, or two of different height. It goes on where other views cannot tell.
     """
     found = np.zeros(gloss.levels.shape, bool)
     mirrors = gloss.angle < parameters.highlight_mirror_angle
@@ -87,13 +89,20 @@ def lobes(gloss: Gloss, parameters: DetectorParameters) -> Mask:
         kept &= np.bincount(inside, mirrors[rows, columns], count) > 0
         for number in np.flatnonzero(kept):
             one = inside == number
-            kept[number] = _is_lobe(rows[one], columns[one], shown[one], gloss)
+            lobe = _fitted(rows[one], columns[one], shown[one], gloss)
+            kept[number] = lobe is not None
+            if lobe is not None:
+                more = np.nonzero(gloss.untold)
+                found[more] |= _terms(more[0], more[1], gloss) @ lobe > np.log(FOOT * height)
         found[rows, columns] |= kept[inside]
     return cv2.morphologyEx(found.view(np.uint8), cv2.MORPH_CLOSE, BRIDGE) > 0
 
 
-def _is_lobe(rows: NDArray[np.intp], columns: NDArray[np.intp], levels: Floats, gloss: Gloss) -> bool:
-    """Whether the gloss of a region is a lobe round the foot of the perpendicular, or a part of one.
+def _fitted(
+    rows: NDArray[np.intp], columns: NDArray[np.intp], levels: Floats, gloss: Gloss
+) -> NDArray[np.float64] | None:
+    """(4,) coefficients of the `_terms` of the gloss of a region; None if that is no lobe round the foot of the
+    perpendicular, or a part of one.
 
     A lobe cos^n over the angle is exp(-n angle^2 / 2), and the angle is the way over the distance: the logarithm of the
     levels is a paraboloid, wherever the region was cut out of it.
@@ -103,16 +112,20 @@ def _is_lobe(rows: NDArray[np.intp], columns: NDArray[np.intp], levels: Floats, 
         columns: (N,) likewise.
         levels: (N,) of gloss, above 0.
     """
-    x, y = (columns - gloss.foot[1]) / gloss.distance, (rows - gloss.foot[0]) / gloss.distance
-    terms = np.column_stack([np.ones_like(x), x, y, x * x + y * y])
-    logarithms = np.log(levels.astype(np.float64))
-    solution = np.linalg.lstsq(terms, logarithms, rcond=None)[0]
-    _, across, down, bend = solution.tolist()
-    freedom = max(len(levels) - terms.shape[1], 1) / max(len(levels) - 1, 1)
-    explained = 1 - (logarithms - terms @ solution).var() / max(logarithms.var() * freedom, 1e-9)
-    off_centre = np.hypot(across, down) / max(-2 * bend, 1e-9)
+    terms, logarithms = _terms(rows, columns, gloss), np.log(levels.astype(np.float64))
+    lobe = np.asarray(np.linalg.lstsq(terms, logarithms, rcond=None)[0], np.float64)
+    freedom = max(len(levels) - len(lobe), 1) / max(len(levels) - 1, 1)
+    explained = 1 - (logarithms - terms @ lobe).var() / max(logarithms.var() * freedom, 1e-9)
+    exponent = -2 * float(lobe[3])
+    off_centre = np.hypot(lobe[1], lobe[2]) / max(exponent, 1e-9)
     obvious = explained > CLEAR and len(levels) * gloss.area > LARGE
-    return bool(-2 * bend > SHEEN and explained > SHAPE and off_centre < (AJAR if obvious else CENTRE))
+    return lobe if exponent > SHEEN and explained > SHAPE and off_centre < (AJAR if obvious else CENTRE) else None
+
+
+def _terms(rows: NDArray[np.intp], columns: NDArray[np.intp], gloss: Gloss) -> NDArray[np.float64]:
+    """(N, 4) of a paraboloid over the angles from the foot: 1, x, y, x^2 + y^2 [rad]."""
+    x, y = (columns - gloss.foot[1]) / gloss.distance, (rows - gloss.foot[0]) / gloss.distance
+    return np.column_stack([np.ones_like(x), x, y, x * x + y * y])
 
 
 def outlines(regions: Mask) -> tuple[NDArray[np.float64], ...]:

@@ -84,6 +84,14 @@ def test_a_plateau_that_is_not_overexposed_is_no_highlight() -> None:
     assert not compared(painted(200 + np.minimum(bell(120, 8), 20)), painted(200 + bell(0, 8))).regions.any()
 
 
+def test_a_highlight_goes_on_where_no_other_view_tells() -> None:
+    # 18 levels have fallen to the foot, 0.4 of 9, at 12 px sqrt(2 ln 5) = 22 px
+    blind = replace(painted(90 + bell(0, 12)), coloured=COLUMNS >= 90)
+    found = compared(painted(90 + bell(18, 12)), blind)
+    assert found.regions[(RADIUS < 18) & (COLUMNS < 105)].all()
+    assert not found.regions[RADIUS > 30].any()
+
+
 def test_what_furniture_leaves_of_a_highlight_is_found() -> None:
     half = replace(painted(90 + bell(60, 12)), coloured=COLUMNS < 103)
     found = compared(half, painted(90 + bell(0, 12)))

@@ -42,7 +42,7 @@ def _flush(rng: np.random.Generator, wall: Finish) -> DoorPlan:
 
     It is low, so that a highlight hides much of a side.
     """
-    shade = -float(rng.uniform(0.015, 0.025))
+    shade = -float(rng.uniform(0.02, 0.028))
     door = replace(random_door(rng, wall), finish=finishes.shifted(wall, (shade, shade, shade)))
     height = float(rng.uniform(1.96, 2.02))
     return replace(door, height=height, frame=NO_FRAME, recess=0.0, gap=0.0005, opens="inward", panel="flat")
