@@ -85,11 +85,11 @@ def test_a_plateau_that_is_not_overexposed_is_no_highlight() -> None:
 
 
 def test_a_highlight_goes_on_where_no_other_view_tells() -> None:
-    # 18 levels have fallen to the foot, 0.4 of 9, at 12 px sqrt(2 ln 5) = 22 px
-    blind = replace(painted(90 + bell(0, 12)), coloured=COLUMNS >= 90)
-    found = compared(painted(90 + bell(18, 12)), blind)
-    assert found.regions[(RADIUS < 18) & (COLUMNS < 105)].all()
-    assert not found.regions[RADIUS > 30].any()
+    # 18 levels have fallen to the foot, 0.4 of 9, at 6 px sqrt(2 ln 5) = 11 px
+    blind = replace(painted(90 + bell(0, 6)), coloured=COLUMNS >= 97)
+    found = compared(painted(90 + bell(18, 6)), blind)
+    assert found.regions[RADIUS < 8].all()
+    assert not found.regions[RADIUS > 3 * 6].any()
 
 
 def test_what_furniture_leaves_of_a_highlight_is_found() -> None:
