@@ -24,15 +24,17 @@ def plans(rng: np.random.Generator) -> tuple[RoomPlan, ...]:
     plaster = finishes.plaster(rng, finishes.pick(rng, WALL_PAINTS), 0.03)
     paint = finishes.lacquer(rng, plaster, large=True)
     ordinary = partial(_ordinary, double=bool(rng.random() < 0.5))
-    return (room(rng, "specular", [_wall([_ordinary, _flush]), _wall([_flush]), _wall([ordinary])], paint, places=2),)
+    # a highlight is larger on a dark door
+    walls = [_wall([_ordinary, _flush]), _wall([_flush]), _wall([ordinary], smoother=True)]
+    return (room(rng, "specular", walls, paint, places=2),)
 
 
-def _wall(kinds: Sequence[Callable[[np.random.Generator, Finish], DoorPlan]]) -> Maker:
+def _wall(kinds: Sequence[Callable[[np.random.Generator, Finish], DoorPlan]], *, smoother: bool = False) -> Maker:
     def make(rng: np.random.Generator, site: Site) -> WallPlan:
         doors = [kind(rng, site.paint) for kind in kinds]
         tries = [lay_out(rng, doors, site.length) for _ in range(TRIES)]
         placed = min(tries, key=lambda doors: _way_to_edge(doors, site.feet))
-        return judged_wall(rng, site, placed, busy=0.4)
+        return judged_wall(rng, site, placed, finish=finishes.smoother(site.paint) if smoother else None, busy=0.4)
 
     return make
 
@@ -42,7 +44,7 @@ def _flush(rng: np.random.Generator, wall: Finish) -> DoorPlan:
 
     It is low, so that a highlight hides much of a side.
     """
-    shade = -float(rng.uniform(0.02, 0.028))
+    shade = -float(rng.uniform(0.014, 0.02))
     door = replace(random_door(rng, wall), finish=finishes.shifted(wall, (shade, shade, shade)))
     height = float(rng.uniform(1.96, 2.02))
     return replace(door, height=height, frame=NO_FRAME, recess=0.0, gap=0.0005, opens="inward", panel="flat")
