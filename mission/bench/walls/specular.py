@@ -44,7 +44,7 @@ def _flush(rng: np.random.Generator, wall: Finish) -> DoorPlan:
 
     It is low, so that a highlight hides much of a side.
     """
-    shade = -float(rng.uniform(0.014, 0.02))
+    shade = -float(rng.uniform(0.017, 0.022))
     door = replace(random_door(rng, wall), finish=finishes.shifted(wall, (shade, shade, shade)))
     height = float(rng.uniform(1.96, 2.02))
     return replace(door, height=height, frame=NO_FRAME, recess=0.0, gap=0.0005, opens="inward", panel="flat")
