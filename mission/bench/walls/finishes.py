@@ -89,7 +89,7 @@ def wood(rng: np.random.Generator, colour: Colour, variation: float = 0.12) -> F
 
 def glossy(rng: np.random.Generator, finish: Finish) -> Finish:
     """Gloss paint, lacquer or glaze: highlights of the flash cover some 8 cm2 to 0.27 m2 of a wall (section 7.4)."""
-    return replace(finish, specular=float(rng.uniform(0.2, 0.45)), roughness=_roughness(rng, 0.17, 0.28))
+    return replace(finish, specular=float(rng.uniform(0.2, 0.45)), roughness=_roughness(rng, 0.14, 0.28))
 
 
 def lacquer(rng: np.random.Generator, finish: Finish, *, large: bool = False) -> Finish:
