@@ -51,10 +51,14 @@ def outlook(points: NDArray[np.float64]) -> Outlook:
 
 def blueprint(view: Outlook, walls: Sequence[WallTab] = ()) -> rrb.Blueprint:
     """The layout of the whole recording; walls without doors are there, but folded away."""
-    tabs = [_mission(view), *(_wall(wall) for wall in walls), _results()]
+    return tabbed([_mission(view), *(_wall(wall) for wall in walls), _results()], timeline="step")
+
+
+def tabbed(tabs: Sequence[rrb.Container], *, timeline: str) -> rrb.Blueprint:
+    """Tabs alone, all panels folded away, at the end of a timeline."""
     return rrb.Blueprint(
         rrb.Tabs(*tabs, active_tab=0),
-        rrb.TimePanel(timeline="step", play_state="following", state="collapsed"),
+        rrb.TimePanel(timeline=timeline, play_state="following", state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         auto_views=False,

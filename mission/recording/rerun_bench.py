@@ -12,7 +12,8 @@ import rerun.blueprint as rrb
 from detector.result import Rectangle
 
 if TYPE_CHECKING:
-    from mission.bench.walls.judging import WallJudgement, WallPicture
+    from mission.recording.blueprint import tabbed
+from mission.bench.walls.judging import WallJudgement, WallPicture
 
 APPLICATION = "door-mission-bench"
 TABLES = "/tables"
@@ -113,11 +114,4 @@ def _blueprint(judgements: Sequence[WallJudgement], figures: Sequence[Path]) -> 
         }
         views = [rrb.Spatial2DView(origin=origin, name=wall) for origin, wall in origins.items()]
         tabs.append(rrb.Grid(*views, grid_columns=COLUMNS, name=category))
-    return rrb.Blueprint(
-        rrb.Tabs(*tabs, active_tab=0),
-        rrb.TimePanel(timeline="seed", play_state="following", state="collapsed"),
-        rrb.BlueprintPanel(state="collapsed"),
-        rrb.SelectionPanel(state="collapsed"),
-        auto_views=False,
-        auto_layout=False,
-    )
+    return tabbed(tabs, timeline="seed")

@@ -71,21 +71,14 @@ class Kit:
 
     def tube(self, body: Body, start: Point, end: Point, radius: float, finish: Finish) -> None:
         """A round bar with round ends."""
-        body.add_geom(
-            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
-            fromto=[*start, *end],
-            size=[radius, 0, 0],
-            material=self._material(finish),
-        )
+        self._bar(mujoco.mjtGeom.mjGEOM_CAPSULE, body, start, end, radius, finish)
 
     def cylinder(self, body: Body, start: Point, end: Point, radius: float, finish: Finish) -> None:
         """A round bar with flat ends."""
-        body.add_geom(
-            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-            fromto=[*start, *end],
-            size=[radius, 0, 0],
-            material=self._material(finish),
-        )
+        self._bar(mujoco.mjtGeom.mjGEOM_CYLINDER, body, start, end, radius, finish)
+
+    def _bar(self, kind: mujoco.mjtGeom, body: Body, start: Point, end: Point, radius: float, finish: Finish) -> None:
+        body.add_geom(type=kind, fromto=[*start, *end], size=[radius, 0, 0], material=self._material(finish))
 
     def ball(self, body: Body, centre: Point, radii: Point, finish: Finish) -> None:
         """An ellipsoid along the body's axes."""
