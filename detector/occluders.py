@@ -15,7 +15,7 @@ NEARER = 0.1
 BEFORE = 0.04
 """What stands out further than frames and skirting, and is set off on both sides, is no leaf [m]."""
 SET_OFF, BORDER = 0.02, 0.015
-"""Step to either side of what is set off, over twice this width [m]; a leaf leaves the wall's plane at its hinge by
+"""Step to either side of what is set off, over this width [m]; a leaf leaves the wall's plane at its hinge by
 degrees."""
 LOOSE = 0.3
 """Least share of its height over which a leaf hangs on the wall, and of a shadow's rim that it borders on."""
@@ -73,17 +73,18 @@ def _loose(merged: Orthoimage, holes: Mask) -> Mask:
 
 def _leaves_by_degrees(merged: Orthoimage, rows: NDArray, columns: NDArray, side: int) -> NDArray[np.bool_]:
     """(N,) whether the depth falls to the wall's without a step beside pixels of a border, right of them or left."""
-    reach = round(BORDER / merged.pixel_size)
-    outer, inner = (np.clip(columns + side * way, 0, merged.depth.shape[1] - 1) for way in (reach, -reach))
-    return np.asarray(merged.depth[rows, inner] - merged.depth[rows, outer] < SET_OFF)  # False for NaN
+    outer = np.clip(columns + side * round(BORDER / merged.pixel_size), 0, merged.depth.shape[1] - 1)
+    return np.asarray(merged.depth[rows, columns] - merged.depth[rows, outer] < SET_OFF)  # False for NaN
 
 
 def _slope(merged: Orthoimage, labels: NDArray, number: int, box: NDArray) -> float:
-    """Of the plane along u that fits a labelled part of the image best."""
+    """Of the plane along u that fits a labelled part of the image best; 0 for a single column."""
     left, top, width, height = box[:4]
     part = np.s_[top : top + height, left : left + width]
     own = labels[part] == number
-    return float(np.polyfit(np.nonzero(own)[1], merged.depth[part][own], 1)[0]) / merged.pixel_size
+    u, depth = np.nonzero(own)[1] * merged.pixel_size, merged.depth[part][own].astype(np.float64)
+    u -= u.mean()
+    return float(u @ depth / (u @ u)) if width > 1 else 0.0
 
 
 def _shadows(seen: Image, sloping: Mask, holes: Mask, pixel_size: float) -> Mask:

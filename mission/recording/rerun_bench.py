@@ -10,10 +10,10 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from detector.result import Rectangle
+from mission.recording.blueprint import tabbed
 
 if TYPE_CHECKING:
-    from mission.recording.blueprint import tabbed
-from mission.bench.walls.judging import WallJudgement, WallPicture
+    from mission.bench.walls.judging import WallJudgement, WallPicture
 
 APPLICATION = "door-mission-bench"
 TABLES = "/tables"

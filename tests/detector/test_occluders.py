@@ -39,6 +39,11 @@ def test_a_curtain_hides_the_wall_however_its_folds_slope() -> None:
     assert not found[:, 163:].any()
 
 
+def test_a_pole_one_pixel_wide_hides_what_is_behind_it() -> None:
+    pole = columns(100, 101)
+    assert hidden(np.where(pole, 0.05, 0.0))[pole].all()
+
+
 def test_a_leaf_that_is_ajar_hides_nothing() -> None:
     # 4 deg: 0.9 m of leaf come 6.3 cm out of the wall, at the hinge by degrees, and end above the hole
     leaf = columns(100, 190)

@@ -20,8 +20,9 @@ TRACE = 3
 """Levels of 255 that are still gloss, on the skirt of a highlight, and may be marked."""
 SMALLEST = 8e-4
 """Highlights below this are not asked for [m2]; the paper's smallest, section 7.4."""
-JOINED = 0.03
-"""Pieces of a highlight that are no further apart are one: the gap round a door cuts it, and coarse sampling [m]."""
+JOINED = 0.1
+"""Pieces of a highlight that are no further apart are one: the gap round a door cuts it, a frame that the flash makes
+white anyway, or coarse sampling [m]."""
 FOUND_SHARE = 0.5
 """A highlight is found if this share of it lies in what the detector marked."""
 FALSE_SHARE = 0.1
