@@ -1,4 +1,4 @@
-"""What of a closed leaf shows from either side: stops and walls cover its edges, those of a slide above all."""
+"""What of a closed leaf that slides shows from either side: the wall that it runs in or behind covers its edges."""
 
 from __future__ import annotations
 

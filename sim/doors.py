@@ -54,8 +54,8 @@ class DoorTruth:
     normal: np.ndarray
     """(3,) horizontal unit normal of the closed leaf, towards the side to which the (first) leaf opens."""
     outlines_in_world: tuple[np.ndarray, np.ndarray]
-    """(4, 3) each, like `corners_in_world`: what shows of that rectangle from the side that `normal` points to, and
-    from the other [m]."""
+    """(4, 3) each, like `corners_in_world`: the doorway as it shows from the side that `normal` points to, and from the
+    other: the closed leaf, and of one that slides what the wall does not cover [m]."""
     leaves: tuple[LeafTruth, ...]
 
 
@@ -149,7 +149,10 @@ def _door(rays: Rays, leaves: tuple[ClosedLeaf, ...]) -> Door:
     right = np.cross([0, 0, 1.0], normal)
     if (corners[1] - corners[0]) @ right < 0:
         corners = corners[[1, 0, 3, 2]]
-    return Door(leaves, corners, normal, (uncovered(rays, corners, normal), uncovered(rays, corners, -normal)))
+    outlines = corners, corners
+    if first.leaf.kind == "sliding":
+        outlines = uncovered(rays, corners, normal), uncovered(rays, corners, -normal)
+    return Door(leaves, corners, normal, outlines)
 
 
 def _named(doors: Sequence[Door], name: str) -> list[ClosedLeaf]:
