@@ -37,7 +37,7 @@ OVERSHOOT = 0.15
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The images that candidates are judged on, with their integral images computed once."""
+    """The images that candidates are judged on. What it keeps of them, candidates share."""
 
     merged: Orthoimage
     seen: Image
@@ -47,6 +47,8 @@ class Scene:
     """(H, W) where some view shows the wall's face, or what lies flat on it."""
     visible: Mask
     """(H, W) where nothing hides the wall's plane: data, or looked through."""
+    hidden: Mask
+    """(H, W) `occluders`."""
     floor_row: int
     """First row below the floor."""
     lowest_row: int

@@ -21,7 +21,7 @@ from detector.illumination import even_light
 from detector.leaves import describe_door, join_leaves
 from detector.merging import merge
 from detector.openings import find_openings, visibility
-from detector.orthoimage import crop, image_shape, mark, orthoimage, sampling_gap
+from detector.orthoimage import crop, image_shape, mark, nearest, orthoimage, sampling_gap
 from detector.outline import settle_sides
 from detector.parallel import each
 from detector.parameters import DetectorParameters
@@ -79,7 +79,7 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         search, scene = find_doors(merged, seen, look.face, area, (wall.height, floor), parameters)
         rectangles = settle_sides(doorway_rectangles(search), look.passed, scene, wall.height, parameters)
     with clock("angles"):
-        bare = replace(merged, depth=np.where(scene.visible, merged.depth, np.float32(np.nan)))
+        bare = replace(merged, depth=nearest(merged.depth, ~scene.hidden))  # a leaf goes on behind furniture
         doors = [describe_door(r, bare, seen, look.around, wall.height, parameters) for r in rectangles]
         doors = [with_lower_edge(d, look.low, bare, wall.height, floor, parameters) for d in doors]
         doors = judged(doors, search, scene, wall.height)

@@ -70,14 +70,15 @@ def find_doors(
     edges = find_edges(merged, seen, parameters)
     floor_row = min(round((height - floor) / px), merged.depth.shape[0])
     lowest = max(1, floor_row - int(np.ceil(parameters.floor_margin / px)) - 1)
-    hidden = occluders(merged, seen, edges)
+    hidden = occluders(merged, seen, edges, parameters)
     visible = ((seen == Visibility.DATA) | (seen == Visibility.THROUGH)) & ~hidden
     open_to_view = ((seen != Visibility.SHADOWED) & ~hidden)[:lowest]
     wall = area.mask & ~edges.sloping  # a leaf of the wall's colour is near its plane beside the hinge
-    looked_at = Scene(merged, seen, edges, wall, face, visible, floor_row, lowest, parameters.max_protrusion)
+    looked_at = Scene(merged, seen, edges, wall, face, visible, hidden, floor_row, lowest, parameters.max_protrusion)
 
     def search(upright: Mask, level: Mask, faint: bool) -> tuple[tuple[Candidate, ...], Scene, tuple[NDArray, NDArray]]:
-        found = replace(edges, upright=upright & ~hidden, level=level & ~hidden)
+        shown = edges.faint_level & ~hidden
+        found = replace(edges, upright=upright & ~hidden, level=level & ~hidden, faint_level=shown)
         scene = replace(looked_at, edges=found)
         lines = (
             find_lines(
@@ -185,7 +186,8 @@ def _stand_alone(
         closed[i] = False
     for i in np.flatnonzero(closed & in_wall):
         box = boxes[np.array([i])]
-        closed[i] = steps(box, scene).agree() or boarded(box, scene)
+        change = steps(box, scene)
+        closed[i] = change.agree() or change.framed() or boarded(box, scene)
     return closed
 
 

@@ -103,6 +103,7 @@ def _settled(
     told[box] = sees
     foot = own.foot[0] - box[0].start, own.foot[1] - box[1].start
     white, untold = own.shown[box].min(axis=2) >= WHITE, own.known[box] & ~sees
+    untold &= own.angle[box] < parameters.highlight_roi_angle
     glossy[box] = lobes(Gloss(levels, white, untold, own.angle[box], foot, own.distance, own.area), parameters)
     size = found.regions.shape[1], found.regions.shape[0]
     regions = cv2.resize(glossy, size, interpolation=cv2.INTER_LINEAR) > 0.5

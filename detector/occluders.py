@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 
 from detector.edges import FLAT, Edges
 from detector.openings import Visibility
+from detector.parameters import DetectorParameters
 from detector.result import Image, Mask, Orthoimage
 
 NEARER = 0.1
 """What is nearer than this to the room and does not slope is no leaf [m]: one at 6 deg, 0.95 m wide, is nearer."""
-BEFORE = 0.04
-"""What stands out further than frames and skirting, and is set off on both sides, is no leaf [m]."""
 SET_OFF, BORDER = 0.02, 0.015
 """Step to either side of what is set off, over this width [m]; a leaf leaves the wall's plane at its hinge by
 degrees."""
@@ -23,13 +22,15 @@ LEAF_EDGE = 0.15
 """A leaf seen on its edge is a strip narrower than this, handles and slope included [m]."""
 TALL = 0.3
 """What is lower than this hides no side of a door [m]."""
+BESIDE = 0.01
+"""A leaf lies this close to its hole, and to what it hides [m]."""
 SHADOW = 0.03
 """Narrower shadows lie beside a leaf that is recessed, as the gap does [m]."""
 SILHOUETTE = 0.015, 0.025
 """Edges this close to what stands just before the wall, and to a shadow, are their silhouette [m]."""
 
 
-def occluders(merged: Orthoimage, seen: Image, edges: Edges) -> Mask:
+def occluders(merged: Orthoimage, seen: Image, edges: Edges, parameters: DetectorParameters) -> Mask:
     """(H, W) what hides the wall and stands just before it or throws a shadow on it, and its silhouette.
 
     A silhouette is no discontinuity of the wall. The leaf of an open door stands out, too, and throws a shadow, but it
@@ -41,7 +42,7 @@ def occluders(merged: Orthoimage, seen: Image, edges: Edges) -> Mask:
     holes = seen == Visibility.THROUGH
     beside_hole = cv2.dilate(holes.astype(np.uint8), across) > 0
     nearer[narrow & beside_hole] = 0
-    before = (nearer > 0) | _loose(merged, holes)
+    before = (nearer > 0) | _loose(merged, holes, max(parameters.max_protrusion, parameters.slab_face))
     behind = _shadows(seen, edges.sloping, holes, merged.pixel_size)
     return _grown(before, SILHOUETTE[0], merged.pixel_size) | _grown(behind, SILHOUETTE[1], merged.pixel_size)
 
@@ -51,9 +52,13 @@ def _grown(mask: Mask, way: float, pixel_size: float) -> Mask:
     return cv2.dilate(mask.astype(np.uint8), np.ones((side, side), np.uint8)) > 0
 
 
-def _loose(merged: Orthoimage, holes: Mask) -> Mask:
-    """(H, W) what stands before the wall without hanging on it by a side: curtains with their folds, for one."""
-    before = np.nan_to_num(merged.depth, nan=0.0) > BEFORE
+def _loose(merged: Orthoimage, holes: Mask, protrusion: float) -> Mask:
+    """(H, W) what stands before the wall without hanging on it by a side: curtains with their folds, for one.
+
+    Args:
+        protrusion: What stands out no further than this may be a leaf or a frame [m].
+    """
+    before = np.nan_to_num(merged.depth, nan=0.0) > protrusion
     if not before.any():
         return before
     count, labels, stats, _ = cv2.connectedComponentsWithStats(before.view(np.uint8), connectivity=4)
@@ -61,10 +66,11 @@ def _loose(merged: Orthoimage, holes: Mask) -> Mask:
     loose = height * merged.pixel_size > TALL
     loose[0] = False
     for side in (-1, 1):
-        rows, columns = np.nonzero(before & ~np.roll(before, -side, axis=1))
+        beyond = np.pad(before, ((0, 0), (1, 1)))[:, 1 + side : before.shape[1] + 1 + side]
+        rows, columns = np.nonzero(before & ~beyond)
         smooth = _leaves_by_degrees(merged, rows, columns, side)
         loose &= np.bincount(labels[rows, columns], smooth, count) < LOOSE * height
-    beside_hole = cv2.dilate(holes.view(np.uint8), np.ones((5, 5), np.uint8)) > 0
+    beside_hole = _grown(holes, BESIDE, merged.pixel_size)
     loose &= np.bincount(labels[before & beside_hole], minlength=count) < LOOSE * height
     for number in np.flatnonzero(loose).tolist():
         loose[number] = abs(_slope(merged, labels, number, stats[number])) < FLAT
@@ -73,7 +79,7 @@ def _loose(merged: Orthoimage, holes: Mask) -> Mask:
 
 def _leaves_by_degrees(merged: Orthoimage, rows: NDArray, columns: NDArray, side: int) -> NDArray[np.bool_]:
     """(N,) whether the depth falls to the wall's without a step beside pixels of a border, right of them or left."""
-    outer = np.clip(columns + side * round(BORDER / merged.pixel_size), 0, merged.depth.shape[1] - 1)
+    outer = np.clip(columns + side * max(1, round(BORDER / merged.pixel_size)), 0, merged.depth.shape[1] - 1)
     return np.asarray(merged.depth[rows, columns] - merged.depth[rows, outer] < SET_OFF)  # False for NaN
 
 
@@ -92,8 +98,7 @@ def _shadows(seen: Image, sloping: Mask, holes: Mask, pixel_size: float) -> Mask
     size = max(1, round(SHADOW / pixel_size))
     shadowed = cv2.morphologyEx((seen == Visibility.SHADOWED).astype(np.uint8), cv2.MORPH_OPEN, np.ones((size, size)))
     count, labels = cv2.connectedComponents(shadowed, connectivity=4)
-    leaf = (holes | (sloping & (seen == Visibility.DATA))).astype(np.uint8)
-    beside_leaf = cv2.dilate(leaf, np.ones((5, 5), np.uint8)) > 0
+    beside_leaf = _grown(holes | (sloping & (seen == Visibility.DATA)), BESIDE, pixel_size)
     rim = (shadowed > 0) & (cv2.erode(shadowed, np.ones((3, 3), np.uint8)) == 0)
     around, touching = (np.bincount(labels[mask], minlength=count) for mask in (rim, rim & beside_leaf))
     kept = touching < LOOSE * around

@@ -34,7 +34,7 @@ BESIDE_WALL = 0.02
 """A leaf whose face is closer to the wall's has the wall itself in its way [m]."""
 SAME_PLANE = 0.01
 """Points of a leaf's face lie this close to its depth, those of its edges do not [m]: three sigma."""
-MAX_COVER = 0.04
+MAX_COVER = 0.1
 """A leaf covers the wall round its hole by no more than this [m]."""
 END = 0.05
 """The density of a leaf's points is measured over this length from its edge, and its end looked for as far [m]."""
@@ -84,7 +84,8 @@ def find_slide(
         place = outline.right - edge * px if to_right else outline.left + edge * px
         if plane > 0:
             above = np.s_[max(int((height - outline.top - END) / px), 0) : rows.stop, max(first, 0) : last]
-            hole_top = height - (above[0].start + _rows_of_wall(merged.depth[above][turn][:, edge:])) * px
+            rows_above = _rows_of_wall(merged.depth[above][turn][:, edge:], seen[above][turn][:, edge:])
+            hole_top = height - (above[0].start + rows_above) * px
             return _before_wall(outline, place, hole_top, to_right, _face(points, outline, plane))
         gap = place - outline.left if to_right else outline.right - place
         return Slide(outline, gap if to_right else -gap)
@@ -106,10 +107,10 @@ def _free_edge(seen: Image, px: float) -> int | None:
     return edge
 
 
-def _rows_of_wall(depth: NDArray[np.float32]) -> int:
-    """Rows (H, W) from the top that show the wall's face; below it, the soffit lies deeper and is seen at a slant."""
-    face = (depth > -BESIDE_WALL).mean(axis=1) > 0.5  # False for NaN
-    return int((~face).argmax())
+def _rows_of_wall(depth: NDArray[np.float32], seen: Image) -> int:
+    """Rows (H, W) above a hole; the soffit in it lies deeper than the wall's face and is seen at a slant."""
+    hole = ((seen == Visibility.THROUGH) | (depth <= -BESIDE_WALL)).mean(axis=1) > 0.5
+    return int(hole.argmax()) if hole.any() else len(hole)
 
 
 def _plane(depth: NDArray[np.float32], px: float) -> float | None:

@@ -47,10 +47,12 @@ class Steps:
         same = (np.abs(self.colour).max(axis=1) < SAME_COLOUR) & (np.abs(self.depth) < SAME_DEPTH)
         return not (same & (self.wall_outside < 0.4)).any()
 
+    def framed(self) -> bool:
+        """Whether there is no wall on any side: a frame of another colour."""
+        return bool(self.wall_outside.max() < WALL_BESIDE)
+
     def agree(self) -> bool:
-        """Whether the inside differs in one way from wall on all visible sides, or is framed: a surface of its own."""
-        if self.wall_outside.max() < WALL_BESIDE:  # a frame of its own
-            return True
+        """Whether the inside differs in one way from wall on all visible sides: a surface of its own."""
         if self.wall_outside.min() < WALL_BESIDE or self.wall_outside.mean() < WALL_ROUND:
             return False
         values = np.column_stack([self.colour / FAINT_COLOUR, self.depth / FAINT_DEPTH])
@@ -63,7 +65,7 @@ def boarded(box: Boxes, scene: Scene) -> bool:
 
     It changes across the sides by chance then.
     """
-    band = round(BAND / scene.merged.pixel_size)
+    band = max(1, round(BAND / scene.merged.pixel_size))
     rows = slice(int(box.top[0]) + band, scene.lowest_row)
     columns = slice(int(box.left[0]) + band, int(box.right[0]) - band)
     known = scene.merged.coloured[rows, columns] & scene.visible[rows, columns]

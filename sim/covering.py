@@ -8,7 +8,7 @@ from sim.rays import Rays
 
 _STEP = 0.001
 """Of the search for the border of what is covered [m]."""
-_REACH = 0.04
+_REACH = 0.12
 """Nothing covers more of a leaf's edge; what does is furniture [m]."""
 _BEFORE = 0.35
 """What covers a leaf lies at most this far before it: a wall's thickness [m]."""

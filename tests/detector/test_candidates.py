@@ -30,7 +30,7 @@ def scene(lines: tuple[tuple[slice, slice], ...] = (), colour: NDArray | None = 
     edges = Edges(upright | level, nothing, upright, level, nothing, upright, level)
     seen = np.full(SHAPE, Visibility.DATA, np.uint8)
     everything = np.ones(SHAPE, bool)
-    return Scene(image, seen, edges, everything, everything, everything, 260, 259, 0.06)
+    return Scene(image, seen, edges, everything, everything, everything, ~everything, 260, 259, 0.06)
 
 
 LEFT, RIGHT, TOP = np.s_[60:, 100], np.s_[60:, 190], np.s_[60, 100:191]

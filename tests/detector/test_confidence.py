@@ -31,7 +31,7 @@ def scene(*, step: int, hidden: float = 0.0) -> Scene:
     visible[250 - round(200 * hidden) :, 100:190] = False
     edges = Edges(*[none] * 7)
     seen = np.full(SHAPE, Visibility.DATA, np.uint8)
-    return Scene(merged, seen, edges, wall, wall, visible, floor_row=250, lowest_row=250, protrusion=0.06)
+    return Scene(merged, seen, edges, wall, wall, visible, ~visible, floor_row=250, lowest_row=250, protrusion=0.06)
 
 
 def candidate(**changes: object) -> Candidate:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from detector.edges import Edges
 from detector.occluders import occluders
 from detector.openings import Visibility
+from detector.parameters import DetectorParameters
 from detector.result import Mask
 from tests.detector.conftest import plain_image
 
@@ -20,7 +21,9 @@ def hidden(depth: NDArray, *, sloping: Mask = NOTHING, seen: NDArray | None = No
     image.depth[:] = depth
     looked = np.full((SIDE, SIDE), Visibility.DATA, np.uint8) if seen is None else seen
     nothing = NOTHING.copy()
-    return occluders(image, looked, Edges(nothing, nothing, nothing, nothing, sloping, nothing, nothing))
+    return occluders(
+        image, looked, Edges(nothing, nothing, nothing, nothing, sloping, nothing, nothing), DetectorParameters()
+    )
 
 
 def columns(first: int, last: int) -> Mask:
@@ -31,7 +34,7 @@ def columns(first: int, last: int) -> Mask:
 
 def test_a_curtain_hides_the_wall_however_its_folds_slope() -> None:
     curtain = columns(100, 160)
-    folds = 0.09 + 0.03 * np.sin(2 * np.pi * np.arange(SIDE) / 10)  # 6 to 12 cm before the wall, every 10 cm
+    folds = 0.1 + 0.03 * np.sin(2 * np.pi * np.arange(SIDE) / 10)  # 7 to 13 cm before the wall, every 10 cm
     found = hidden(np.where(curtain, folds, 0.0), sloping=curtain)
 
     assert found[curtain].all()
@@ -41,7 +44,11 @@ def test_a_curtain_hides_the_wall_however_its_folds_slope() -> None:
 
 def test_a_pole_one_pixel_wide_hides_what_is_behind_it() -> None:
     pole = columns(100, 101)
-    assert hidden(np.where(pole, 0.05, 0.0))[pole].all()
+    assert hidden(np.where(pole, 0.07, 0.0))[pole].all()
+
+
+def test_a_leaf_on_the_wall_s_face_is_a_leaf() -> None:
+    assert not hidden(np.where(columns(100, 190), 0.05, 0.0)).any()
 
 
 def test_a_leaf_that_is_ajar_hides_nothing() -> None:

@@ -136,7 +136,7 @@ def true_door(name: str, wall: Wall, *, angle: float = np.nan, way: float = np.n
         corners_in_world=corners,
     )
     kind = "hinged" if np.isnan(way) else "sliding"
-    return DoorTruth(name, kind, (name,), corners, wall.normal, (leaf,))
+    return DoorTruth(name, kind, (name,), corners, wall.normal, (corners, corners), (leaf,))
 
 
 def photo() -> Photo:

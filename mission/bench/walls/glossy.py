@@ -23,6 +23,8 @@ SMALLEST = 8e-4
 JOINED = 0.1
 """Pieces of a highlight that are no further apart are one: the gap round a door cuts it, a frame that the flash makes
 white anyway, or coarse sampling [m]."""
+CUT = 0.03
+"""The same for what the detector marked: the gap round a door [m]."""
 FOUND_SHARE = 0.5
 """A highlight is found if this share of it lies in what the detector marked."""
 FALSE_SHARE = 0.1
@@ -121,8 +123,8 @@ def compare(asked: Mask, gloss: Mask, marked: Mask, *, pixel_size: float) -> Hig
         marked: (H, W) what the detector marked.
         pixel_size: [m].
     """
-    covered = _shares(asked, marked, pixel_size)
-    glossy = _shares(marked, gloss, pixel_size)
+    covered = _shares(asked, marked, pixel_size, JOINED)
+    glossy = _shares(marked, gloss, pixel_size, CUT)
     return HighlightCount(
         true=len(covered),
         found=int(np.count_nonzero(covered >= FOUND_SHARE)),
@@ -131,9 +133,9 @@ def compare(asked: Mask, gloss: Mask, marked: Mask, *, pixel_size: float) -> Hig
     )
 
 
-def _shares(mask: Mask, other: Mask, pixel_size: float) -> NDArray[np.float64]:
-    """(K,) share in the other mask of each region of a mask that is larger than `SMALLEST`; see `JOINED`."""
-    disc = _disc(JOINED, pixel_size)
+def _shares(mask: Mask, other: Mask, pixel_size: float, gap: float) -> NDArray[np.float64]:
+    """(K,) share in the other mask of each region of a mask that is larger than `SMALLEST`, gaps [m] closed."""
+    disc = _disc(gap, pixel_size)
     margin = disc.shape[0]
     padded = cv2.copyMakeBorder(mask.astype(np.uint8), *(margin,) * 4, cv2.BORDER_CONSTANT, value=0)
     joined = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, disc)[margin:-margin, margin:-margin]
