@@ -14,7 +14,7 @@ import numpy as np
 
 from detector.candidates import Boxes, Scene
 from detector.result import Candidate, Door, DoorSearch, Evidence
-from detector.steps import Steps, steps
+from detector.steps import Steps, is_set_apart, steps
 
 BIAS = -14.06
 WEIGHTS = Evidence(
@@ -47,14 +47,15 @@ def measure(candidate: Candidate, scene: Scene, height: float) -> Evidence:
     """
     r, px = candidate.rectangle, scene.merged.pixel_size
     left, right, top = (np.array([x / px - 0.5]) for x in (r.left, r.right, height - r.top))
-    change = steps(Boxes(left, right, top), scene)
+    box = Boxes(left, right, top)
+    change = steps(box, scene)
     inner = np.s_[int(top[0]) + 1 : scene.lowest_row, int(left[0]) + 1 : int(right[0]) + 1]
     sides = candidate.side_support[:3]  # the fourth is the floor
     return Evidence(
         outline=float(np.mean(sides)),
         weakest_side=min(sides),
         one_surface=min(candidate.dominant_colour_share, candidate.dominant_depth_share),
-        apart=1.0 if change.agree() else 1 - min(candidate.wall_share / MUCH_WALL, 1.0),
+        apart=1.0 if is_set_apart(box, scene) else 1 - min(candidate.wall_share / MUCH_WALL, 1.0),
         wall_round=candidate.surroundings,
         visible=float(scene.visible[inner].mean()),
         contrast=_shared(change),

@@ -29,7 +29,7 @@ from detector.rectangles import find_lines
 from detector.result import Candidate, DoorSearch, Image, Mask, Orthoimage, Rectangle, WallArea
 from detector.selection import covers, frames, smallest
 from detector.sill import hangs
-from detector.steps import boarded, steps
+from detector.steps import is_set_apart, steps
 
 LINE_SHARE = 0.45
 """Share of the window that a line covers at least: of the shortest side of a door, with occlusion."""
@@ -185,9 +185,7 @@ def _stand_alone(
     for i in np.flatnonzero(closed)[np.argsort(-support[closed].sum(axis=1), kind="stable")][JUDGED:]:
         closed[i] = False
     for i in np.flatnonzero(closed & in_wall):
-        box = boxes[np.array([i])]
-        change = steps(box, scene)
-        closed[i] = change.agree() or change.framed() or boarded(box, scene)
+        closed[i] = is_set_apart(boxes[np.array([i])], scene)
     return closed
 
 

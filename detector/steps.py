@@ -60,6 +60,15 @@ class Steps:
         return len(values) >= 2 and bool(((values >= 1).all(axis=0) | (values <= -1).all(axis=0)).any())
 
 
+def is_set_apart(box: Boxes, scene: Scene) -> bool:
+    """Whether one rectangle is a surface of its own.
+
+    All its sides differ from the wall in one way, or a frame lies between, or boards make them differ by chance.
+    """
+    change = steps(box, scene)
+    return change.agree() or change.framed() or boarded(box, scene)
+
+
 def boarded(box: Boxes, scene: Scene) -> bool:
     """Whether the colour within one rectangle changes from board to board, and not along them.
 
