@@ -40,6 +40,8 @@ OPEN_SHARE = 0.15
 CLEAR_SUPPORT = 0.8
 """Support of every side and foot of an outline that cuts a rectangle out of a wall of its own colour."""
 MAX_OVERSHOOT = 0.5
+ENDS = 0.2
+"""The head of a door of boards among boards is all there is to tell it from them: it must end, within this."""
 MAX_LINES = 50
 SHOWN = 30
 """Rejected candidates that are kept for the record."""
@@ -181,11 +183,13 @@ def _stand_alone(
     """
     closed = (support.min(axis=1) > CLEAR_SUPPORT) & (feet.min(axis=1) > CLEAR_SUPPORT)
     closed &= boxes.top * scene.merged.pixel_size > OVERSHOOT  # a plank goes up to the ceiling
-    closed[closed] = overshoot(boxes[closed], scene) < MAX_OVERSHOOT
+    beyond = np.ones(len(boxes))
+    beyond[closed] = overshoot(boxes[closed], scene)
+    closed &= beyond < MAX_OVERSHOOT
     for i in np.flatnonzero(closed)[np.argsort(-support[closed].sum(axis=1), kind="stable")][JUDGED:]:
         closed[i] = False
     for i in np.flatnonzero(closed & in_wall):
-        closed[i] = is_set_apart(boxes[np.array([i])], scene)
+        closed[i] = is_set_apart(boxes[np.array([i])], scene, boards=bool(beyond[i] < ENDS))
     return closed
 
 

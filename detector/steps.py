@@ -60,13 +60,16 @@ class Steps:
         return len(values) >= 2 and bool(((values >= 1).all(axis=0) | (values <= -1).all(axis=0)).any())
 
 
-def is_set_apart(box: Boxes, scene: Scene) -> bool:
+def is_set_apart(box: Boxes, scene: Scene, *, boards: bool = True) -> bool:
     """Whether one rectangle is a surface of its own.
 
     All its sides differ from the wall in one way, or a frame lies between, or boards make them differ by chance.
+
+    Args:
+        boards: False does not accept the last.
     """
     change = steps(box, scene)
-    return change.agree() or change.framed() or boarded(box, scene)
+    return change.agree() or change.framed() or (boards and boarded(box, scene))
 
 
 def boarded(box: Boxes, scene: Scene) -> bool:
