@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -15,9 +15,6 @@ from detector.openings import Visibility
 from detector.parameters import DetectorParameters
 from detector.rectangles import CLEAR_SHARE, LEAST_VISIBLE, box_sums, integral, pairs
 from detector.result import Image, Mask, Orthoimage
-
-if TYPE_CHECKING:
-    from detector.steps import Strip
 
 FOOT = 0.3
 """The sides of a door reach the floor; those of a panel in it do not: tested over this height [m]."""
@@ -33,6 +30,17 @@ STRIP = (0.01, 0.06)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
 OVERSHOOT = 0.15
 """How far beyond its corners the outline of a door must have ended [m]."""
+
+
+class Strip(NamedTuple):
+    """What is seen of the wall on a strip."""
+
+    colour: NDArray[np.float64]
+    """(3,) median, of 1."""
+    depth: float
+    """Median [m]."""
+    wall: float
+    """Share of it that is wall area."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +103,7 @@ def door_boxes(
     return Boxes(vertical[chosen[:, 0]], vertical[chosen[:, 1]], tops[top.ravel()])
 
 
-def side_support(boxes: Boxes, scene: Scene, parameters: DetectorParameters) -> tuple[NDArray, NDArray, NDArray]:
+def side_support(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]:
     """Condition 2: share of the left, top, right and bottom sides on a discontinuity, (N, 4).
 
     Shares are of the visible length; what furniture hides can neither support nor refute. Where most of a side is

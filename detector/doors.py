@@ -130,7 +130,7 @@ def judge(
     """
     if len(boxes) == 0:
         return ()
-    support, feet, corners = side_support(boxes, scene, parameters)
+    support, feet, corners = side_support(boxes, scene)
     wall, visible, through = inner_shares(boxes, scene)
     around = surroundings(boxes, scene)
     alone = _stand_alone(boxes, support, feet, wall > parameters.alpha3, scene)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.candidates import Boxes, Scene, strips
+from detector.candidates import Boxes, Scene, Strip, strips
 from detector.result import Image, Mask
 
 FAINT_COLOUR = 0.008
@@ -99,17 +98,6 @@ def boarded(box: Boxes, scene: Scene) -> bool:
     across = boards.std(axis=0).max()
     along = np.nanmedian(np.abs(colour[:, with_data] - boards), axis=(0, 1)).max()
     return bool(across > max(FAINT_COLOUR, UNLIKE * along))
-
-
-class Strip(NamedTuple):
-    """What is seen of the wall on a strip."""
-
-    colour: NDArray[np.float64]
-    """(3,) median, of 1."""
-    depth: float
-    """Median [m]."""
-    wall: float
-    """Share of it that is wall area."""
 
 
 def steps(box: Boxes, scene: Scene) -> Steps:

@@ -9,7 +9,6 @@ from detector.candidates import Boxes, Scene, overshoot, side_support
 from detector.doors import fainter_doors
 from detector.edges import Edges
 from detector.openings import Visibility
-from detector.parameters import DetectorParameters
 from detector.result import Candidate, Rectangle
 from detector.steps import boarded
 from tests.detector.conftest import plain_image
@@ -40,11 +39,11 @@ def test_a_top_that_ends_before_the_sides_is_that_of_a_pane() -> None:
     pane = Boxes(DOOR.left, DOOR.right, np.array([80.0]))
     lines = (LEFT, RIGHT, TOP, np.s_[80, 110:181])  # the pane is 10 cm from the sides
 
-    support, _, corners = side_support(pane, scene(lines), DetectorParameters())
+    support, _, corners = side_support(pane, scene(lines))
     np.testing.assert_allclose(support[0], [1, 71 / 91, 1, 1])
     np.testing.assert_allclose(corners, [[0, 0]])
 
-    np.testing.assert_allclose(side_support(DOOR, scene(lines), DetectorParameters())[2], [[1, 1]])
+    np.testing.assert_allclose(side_support(DOOR, scene(lines))[2], [[1, 1]])
 
 
 def test_the_head_of_a_door_ends_at_its_corners_and_a_joint_of_tiles_goes_on() -> None:
