@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from detector.candidates import Boxes, Scene
 from detector.openings import Visibility
+from detector.orthoimage import column_medians
 from detector.result import Image, Mask
 
 SAMPLED_PX = 6
@@ -64,14 +65,6 @@ def _plane(depth: NDArray, data: Mask) -> NDArray[np.float64]:
     i, j = np.triu_indices(len(columns), max(1, len(columns) // 6))
     slope = np.median((medians[j] - medians[i]) / (columns[j] - columns[i]))
     return np.arange(depth.shape[1]) * slope + np.median(medians - slope * columns)
-
-
-def column_medians(values: NDArray[np.float32]) -> NDArray[np.float32]:
-    """(W,) median of each column without its NaNs; every column has a number. Many times as fast as `np.nanmedian`."""
-    ascending = np.sort(values, axis=0)  # NaNs go to the end
-    count = len(values) - np.isnan(values).sum(axis=0)
-    lower, upper = (np.take_along_axis(ascending, middle[None], axis=0)[0] for middle in ((count - 1) // 2, count // 2))
-    return (lower + upper) / 2
 
 
 def _dominant_colour(colours: Image) -> float:

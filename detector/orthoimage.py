@@ -268,3 +268,11 @@ def mark(crossings: NDArray[np.float32], wall: Wall, gap_px: int, parameters: De
     mask = np.zeros(shape[0] * shape[1], bool)
     mask[pixels(crossings, wall, shape, parameters.pixel_size)] = True
     return close_gaps(mask.reshape(shape), gap_px)
+
+
+def column_medians(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(W,) median of each column without its NaNs; every column has a number. Many times as fast as `np.nanmedian`."""
+    ascending = np.sort(values, axis=0)  # NaNs go to the end
+    count = len(values) - np.isnan(values).sum(axis=0)
+    lower, upper = (np.take_along_axis(ascending, middle[None], axis=0)[0] for middle in ((count - 1) // 2, count // 2))
+    return (lower + upper) / 2

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from detector.angle import closed_depth
 from detector.candidates import Scene
+from detector.orthoimage import column_medians
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, Rectangle
 from detector.subpixel import components, edge_centre
@@ -137,7 +138,7 @@ def _medians(depth: NDArray[np.float32]) -> NDArray[np.float32]:
     result = np.full(depth.shape[1], np.nan, np.float32)
     known = np.isfinite(depth).any(axis=0)
     if known.any():
-        result[known] = np.nanmedian(depth[:, known], axis=0)
+        result[known] = column_medians(depth[:, known])
     return result
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from detector.openings import Visibility
+from detector.orthoimage import column_medians
 from detector.result import Image, Orthoimage, Rectangle
 
 NEAR_EDGE = 0.1
@@ -120,7 +121,7 @@ def _plane(depth: NDArray[np.float32], px: float) -> float | None:
     columns = columns[margin:-margin]
     if len(columns) < 3:
         return None
-    medians = np.nanmedian(depth[:, columns], axis=0)
+    medians = column_medians(depth[:, columns])
     middle = float(np.median(medians))
     flat = np.abs(medians - middle) < FLAT / 2
     return middle if flat.mean() >= CONTIGUOUS and abs(middle) > BESIDE_WALL else None
