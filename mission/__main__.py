@@ -84,7 +84,8 @@ def parser() -> argparse.ArgumentParser:
         help="open a door of the scene to an angle from closed; a wrong NAME lists the right ones; may be repeated",
     )
     run.add_argument("--keyframe", metavar="NAME", help="start from a keyframe of the scene (default: the first)")
-    run.add_argument("--max-scans", type=_positive, metavar="N", help="at most so many scans")
+    run.add_argument("--max-scans", type=_positive, metavar="N", help="at most so many scans a room")
+    run.add_argument("--max-rooms", type=_positive, metavar="N", help="at most so many rooms")
     run.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
     run.add_argument(
         "--set",

@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError
 
 from detector.parameters import DetectorParameters
 from mission.errors import UsageError
+from mission.linking import LinkParameters
 from mission.navigation import NavigationParameters
 from mission.planning import PlanningParameters
 from mission.registration import RegistrationParameters
@@ -34,6 +35,7 @@ class MissionConfig(Parameters):
     robot: RobotParameters = Field(default_factory=RobotParameters, description="Robotnik Guardian")
     samples: SampleParameters = Field(default_factory=SampleParameters)
     registration: RegistrationParameters = Field(default_factory=RegistrationParameters)
+    links: LinkParameters = Field(default_factory=LinkParameters, description="between rooms")
     structure: StructureParameters = Field(default_factory=StructureParameters)
     voxels: VoxelParameters = Field(default_factory=VoxelParameters)
     planning: PlanningParameters = Field(default_factory=PlanningParameters)

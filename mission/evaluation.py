@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from detector.metrics import Overlap, overlap
-from detector.result import Door, Leaf, Rectangle, WallResult
+from detector.result import Door, Leaf, Rectangle
 from detector.room import Wall
+from mission.door_faces import door_name
+from mission.rigid import Pose, rotated, transformed
 
 if TYPE_CHECKING:
     from sim.doors import DoorTruth
@@ -72,8 +74,43 @@ class DoorEvaluation:
         return next((leaf.opens for leaf in self.door.leaves if leaf.opens), None)
 
 
+class Judged(Protocol):
+    """A wall and the doors that the detector found in it."""
+
+    @property
+    def wall(self) -> Wall:
+        """In the world."""
+
+    @property
+    def doors(self) -> tuple[Door, ...]:
+        """From left to right."""
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedWall:
+    """A wall and its doors without all that led to them."""
+
+    wall: Wall
+    doors: tuple[Door, ...]
+
+
+def judged(results: Sequence[Judged]) -> tuple[JudgedWall, ...]:
+    """What remains of the detector's results when its pictures are let go."""
+    return tuple(JudgedWall(result.wall, result.doors) for result in results)
+
+
+def placed(walls: Sequence[Judged], world_from_room: Pose) -> list[JudgedWall]:
+    """Walls of a room where the room lies in the world."""
+    moved = []
+    for one in walls:
+        u, v = rotated(np.stack([one.wall.u, one.wall.v]), world_from_room)
+        origin = transformed(one.wall.origin[None], world_from_room)[0]
+        moved.append(JudgedWall(replace(one.wall, origin=origin, u=u, v=v), one.doors))
+    return moved
+
+
 def evaluate(
-    results: Sequence[WallResult],
+    results: Sequence[Judged],
     true_doors: Sequence[DoorTruth],
     *,
     room: int,
@@ -109,16 +146,11 @@ def evaluate(
     evaluations = []
     for f, (wall, door) in enumerate(found):
         matched = true_doors[truth_of[f]] if f in truth_of else None
-        door_id = f"{room}.{wall + 1}-{_letters(sum(w == wall for w, _ in found[:f]))}"
+        door_id = door_name(room, wall + 1, sum(w == wall for w, _ in found[:f]))
         evaluations.append(_evaluation(door_id, wall + 1, results[wall].wall, door=door, truth=matched))
     here = {t for t, truth in enumerate(true_doors) if _is_of_room(truth, outline)}
     missed = tuple(true_doors[t].name for t in sorted(here - set(truth_of.values())))
     return tuple(evaluations), missed
-
-
-def _letters(number: int) -> str:
-    """ "a", "b", ... "z", "aa", "ab", ... of 0, 1, ..."""
-    return (_letters(number // 26 - 1) if number >= 26 else "") + "abcdefghijklmnopqrstuvwxyz"[number % 26]
 
 
 def _is_of_room(truth: DoorTruth, outline: NDArray[np.float64]) -> bool:

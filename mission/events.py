@@ -20,6 +20,7 @@ if TYPE_CHECKING:  # events are plain data: making one must not import mujoco, o
     from mission.evaluation import DoorEvaluation
     from mission.grid import OccupancyGrid
     from mission.planning import Plan
+    from mission.pose_graph import Link
     from mission.structure import Structure
     from mission.voxels import VoxelModel
     from sim.camera import Photo
@@ -59,6 +60,37 @@ class MissionStarted(Event):
     robot: RobotShape
     base_from_scanner: Pose
     true_doors: tuple[DoorTruth, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RoomEntered(Event):
+    """The robot stands where it is to scan a room for the first time.
+
+    Everything that is measured in a room is in the room's own frame, which is the map's as the robot believed it here.
+    """
+
+    how: Literal["start", "door", "set down"]
+    door: str | None
+    """The door that it came through, as the room before has it: "1.2-a"."""
+    world_from_room: Pose
+    """Where the room's frame lies in the map, as far as is known."""
+    world_from_base: Pose
+    """Where the robot believes to be, in the room's frame."""
+    true_world_from_base: Pose
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RoomsTied(Event):
+    """A completed room was linked to the others: the graph of rooms and doors, and where every room lies."""
+
+    world_from_room: dict[int, Pose]
+    """(4, 4) of each room that was entered."""
+    links: tuple[Link, ...]
+    """All links so far, those by doors and those by scans."""
+    exits: tuple[str, ...]
+    """Doors of the room that the robot can drive through."""
+    refused: tuple[tuple[str, str], ...]
+    """The others, and why not."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

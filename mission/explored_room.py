@@ -1,7 +1,12 @@
-"""What the robot knows of the room that it is in: estimates only."""
+"""What the robot knows of a room: estimates only, in the room's own frame.
+
+That frame is the world as the robot knew it when it entered. Names that end in `in_world` mean it: where it lies in
+the true map, links to other rooms tell later.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,6 +17,7 @@ from mission.config import MissionConfig
 from mission.grid import Footprint, OccupancyGrid, grid_from_scans
 from mission.localisation import LaserMap, laser_map
 from mission.planning import Plan, plan_next_scan
+from mission.registration import Registrar
 from mission.rigid import Pose
 from mission.samples import PosedSample
 from mission.structure import Structure, find_structure
@@ -26,6 +32,10 @@ class ExploredRoom:
     number: int
     footprint: Footprint
     config: MissionConfig
+    registrar: Registrar
+    """With the map of what was scanned here; through a doorway it begins with a scan from the threshold."""
+    threshold: PosedSample | None = None
+    """The scan from the doorway, for driving in: no scan of this room, for it saw the one before as well."""
     views: list[View] = field(default_factory=list)
     samples: list[PosedSample] = field(default_factory=list)
     rejected_in_world: list[NDArray[np.float64]] = field(default_factory=list)
@@ -47,17 +57,22 @@ class ExploredRoom:
         """The labelled voxels of the structure."""
         return label_voxels(structure, self.samples, self.config.voxels, scanner=self.config.scanner)
 
+    @property
+    def scanned(self) -> Sequence[PosedSample]:
+        """What there is to find one's way by: the scans of the room, before the first the one from its threshold."""
+        return self.samples or [sample for sample in [self.threshold] if sample is not None]
+
     def laser_map(self, height: float) -> LaserMap:
         """What the Hokuyos should see at their height over the floor [m]."""
-        normals = np.concatenate([sample.normals_in_world for sample in self.samples])
-        return laser_map(self._points_in_world, normals, height=height, parameters=self.config.navigation.localisation)
+        normals = np.concatenate([sample.normals_in_world for sample in self.scanned])
+        return laser_map(self.points, normals, height=height, parameters=self.config.navigation.localisation)
 
-    def grid(self, structure: Structure) -> OccupancyGrid:
+    def grid(self, floor_height: float) -> OccupancyGrid:
         """Where the robot can stand and drive."""
         return grid_from_scans(
-            self._points_in_world,
+            self.points,
             self._scanners_in_world,
-            floor_height=structure.floor_height,
+            floor_height=floor_height,
             lasers=self.lasers,
             robot_poses=self.robot_poses,
             footprint=self.footprint,
@@ -77,7 +92,7 @@ class ExploredRoom:
         """The next best scan, or why there is none."""
         return plan_next_scan(
             voxels,
-            self._points_in_world,
+            self.points,
             grid,
             world_from_base=world_from_base,
             base_from_scanner=base_from_scanner,
@@ -93,8 +108,9 @@ class ExploredRoom:
 
     @property
     def _scanners_in_world(self) -> NDArray[np.float64]:
-        return np.array([sample.scanner_in_world for sample in self.samples])
+        return np.array([sample.scanner_in_world for sample in self.scanned])
 
     @property
-    def _points_in_world(self) -> NDArray[np.float32]:
-        return np.concatenate([sample.points_in_world for sample in self.samples])
+    def points(self) -> NDArray[np.float32]:
+        """(N, 3) of all scans, thinned, in the room's frame [m]."""
+        return np.concatenate([sample.points_in_world for sample in self.scanned])

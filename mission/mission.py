@@ -1,56 +1,46 @@
-"""The mission: scan, photograph, register, plan, drive, until the room is complete; then find its doors."""
+"""The mission: room after room until no way leads on; of every completed room the doors, the exits, and its place."""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
-from dataclasses import replace
-from functools import partial
+from collections.abc import Iterator
 from types import TracebackType
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from detector.detect import detect_doors
-from mission.colouring import colour_scan
 from mission.config import MissionConfig
-from mission.driving import drive
-from mission.evaluation import evaluate
+from mission.door_faces import door_faces
+from mission.errors import MissionError
+from mission.evaluation import JudgedWall, evaluate, judged, placed
 from mission.events import (
-    Coloured,
     DoorsDetected,
     DoorsEvaluated,
-    Drove,
     Event,
-    Labelled,
     MissionFinished,
     MissionStarted,
-    Photographed,
-    Planned,
-    Registered,
-    Remarked,
-    Scanned,
-    Structured,
+    RoomEntered,
+    RoomsTied,
 )
+from mission.exits import find_exits
+from mission.explored_building import CompletedRoom, ExploredBuilding
 from mission.explored_room import ExploredRoom
 from mission.grid import Footprint
-from mission.joints import opening
-from mission.localisation import localise
 from mission.mopad import Mopad
 from mission.registration import Registrar
-from mission.rigid import Pose, inverted
-from mission.samples import place, sample_scan
+from mission.rigid import Pose, transformed
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
+from mission.surveyor import Surveyor
+from mission.travelling import Traveller
 from mission.versions import versions
 from mission.voxels import VoxelModel, room_from
 from sim.scene import Scene
 
-MAX_DETOURS = 3
-"""So many ways in a row may end before their goal; then the room is done with what is there."""
-
-NO_ARRIVAL = "ways end early"
-"""Reason to stop, beside those of the planner."""
+SET_DOWN_DEVIATION, SET_DOWN_TURN_DEVIATION = 0.03, 0.02
+"""What the robot expects of an operator's word: 1 sigma of errors of up to 5 cm and 2 deg [m, rad]."""
+MOVED = 1e-3
+"""Rooms that links move by less are not judged again [m]."""
 
 
 class Mission:
@@ -71,10 +61,12 @@ class Mission:
         self._scene, self._config, self._seed = scene, config, seed
         self._stopwatch = stopwatch or Stopwatch()
         self._mopad = Mopad(scene, config, seed=seed)
-        self._registrar = Registrar(config.registration)
-        self._room = ExploredRoom(1, Footprint(*self._mopad.robot.footprint), config)
-        self._steps = 0
-        self._scans = 0
+        self._footprint = Footprint(*self._mopad.robot.footprint)
+        self._surveyor = Surveyor(scene, self._mopad, config, self._stopwatch)
+        self._building = ExploredBuilding(config.links)
+        self._traveller = Traveller(self._mopad, self._building, self._surveyor, self._footprint, config.navigation)
+        self._walls: dict[int, tuple[JudgedWall, ...]] = {}
+        self._rooms = 0
 
     def __enter__(self) -> Self:
         return self
@@ -91,22 +83,27 @@ class Mission:
             MissionError: It cannot go on.
         """
         yield self._started()
-        while True:
-            yield from self._scan_here()
-            structure, voxels = yield from self._understand()
-            arrived = yield from self._move_on(structure, voxels)
-            if not arrived:
+        room, entered = self._begin("start")
+        yield entered
+        yield from self._explore(room)
+        for number, pose in enumerate(self._scene.set_downs, start=2):
+            if not self._may_go_on():
                 break
-        yield from self._find_doors(structure, voxels)
-        yield self.finished("completed", "the room is scanned and its doors are judged")
+            if self._building.room_at(pose[:3, 3] + [0.0, 0.0, 1.0]) is not None:
+                continue
+            yield from self._set_down(number, pose)
+        count = len(self._building.rooms)
+        rooms = "the room is scanned and its" if count == 1 else f"{count} rooms are scanned and their"
+        yield self.finished("completed", f"{rooms} doors are judged")
 
     def finished(self, outcome: Literal["completed", "interrupted", "failed"], reason: str) -> MissionFinished:
         """The last event, also of a mission that was stopped from outside."""
-        return self._event(MissionFinished, outcome=outcome, reason=reason)
+        finished: MissionFinished = self._surveyor.event(MissionFinished, outcome=outcome, reason=reason)
+        return finished
 
     def _started(self) -> MissionStarted:
         robot = self._mopad.robot
-        return self._event(
+        started: MissionStarted = self._surveyor.event(
             MissionStarted,
             scene=self._scene.name,
             scene_xml=self._scene.xml,
@@ -118,145 +115,126 @@ class Mission:
             base_from_scanner=robot.base_from_scanner,
             true_doors=self._scene.true_doors(),
         )
+        return started
 
-    def _scan_here(self) -> Iterator[Event]:
-        """Scan, photograph, register and colour at the present pose."""
-        self._scans += 1
-        mopad, room = self._mopad, self._room
-        with self._stopwatch("scan"):
-            scan = mopad.scan()
-        yield self._event(
-            Scanned, scan_number=self._scans, scan=scan, true_world_from_scanner=mopad.true_world_from_scanner
+    def _entered(self, how: Literal["start", "door", "set down"], door: str | None = None) -> RoomEntered:
+        entered: RoomEntered = self._surveyor.event(
+            RoomEntered,
+            how=how,
+            door=door,
+            world_from_room=self._building.world_from_room[self._surveyor.room],
+            world_from_base=self._mopad.world_from_base,
+            true_world_from_base=self._mopad.robot.true_world_from_base,
         )
-        with self._stopwatch("photograph"):
-            photos = mopad.photograph()
-        yield self._event(Photographed, scan_number=self._scans, photos=photos)
+        return entered
 
-        guess = mopad.world_from_base @ mopad.robot.base_from_scanner
-        with self._stopwatch("register"):
-            sample = sample_scan(scan, self._config.samples)
-            found = self._registrar.register(sample, guess)
-        yield self._event(
-            Registered,
-            scan_number=self._scans,
-            guess_world_from_scanner=guess,
-            world_from_scanner=found.world_from_scanner,
-            fitness=found.fitness,
-            rmse=found.rmse,
-            accepted=found.accepted,
-            reason=found.reason,
-            true_world_from_scanner=mopad.true_world_from_scanner,
-        )
-        if not found.accepted:
-            room.rejected_in_world.append(guess[:3, 3])
-            yield self._event(Remarked, level="warning", text=f"scan {self._scans} is left out: {found.reason}")
-            return
-        mopad.believe(found.world_from_scanner @ inverted(mopad.robot.base_from_scanner))
-        self._look_around()
-        room.samples.append(place(sample, found.world_from_scanner))
-        with self._stopwatch("colour"):
-            room.views.append(colour_scan(scan, photos, found.world_from_scanner))
-        yield self._event(Coloured, scan_number=self._scans, view=room.views[-1])
+    def _explore(self, room: ExploredRoom) -> Iterator[Event]:
+        """Do a room, and all that can be reached from it."""
+        yield from self._do(room)
+        here = room.number
+        while self._may_go_on() and (way := self._building.unexplored(here)) is not None:
+            beyond = self._next_room()
+            here, through = yield from self._traveller.go_through(here, way, beyond)
+            if not through:
+                self._building.give_up(way)
+                continue
+            self._rooms, here = beyond.number, beyond.number
+            yield self._entered("door", way.face.door_id)
+            try:
+                yield from self._do(beyond)
+            except MissionError as error:  # it leads out into the open, or to where nothing can be made out
+                yield self._surveyor.remark(f"behind door {way.face.door_id}: {error}")
+                here = yield from self._traveller.come_back(beyond, way)
+                self._building.drop(beyond.number)
+                self._building.give_up(way)
 
-    def _understand(self) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
-        """Floor, ceiling, walls and voxels of the room as far as it is scanned."""
-        with self._stopwatch("structure"):
-            structure = self._room.structure()
-        yield self._event(Structured, scan_number=self._scans, structure=structure)
-        with self._stopwatch("voxels"):
-            voxels = self._room.voxels(structure)
-        yield self._event(Labelled, scan_number=self._scans, voxels=voxels)
-        return structure, voxels
+    def _may_go_on(self) -> bool:
+        return self._rooms < self._config.planning.max_rooms
 
-    def _move_on(self, structure: Structure, voxels: VoxelModel) -> Generator[Event, None, bool]:
-        """Choose the next best scan and drive there; a way that ends early leads to a new plan.
+    def _next_room(self) -> ExploredRoom:
+        """A room of which nothing is known yet."""
+        return ExploredRoom(self._rooms + 1, self._footprint, self._config, Registrar(self._config.registration))
 
-        Returns:
-            Whether the robot stands where it is to scan next; if not, the room is complete.
+    def _begin(self, how: Literal["start", "set down"], **deviations: float) -> tuple[ExploredRoom, RoomEntered]:
+        """Begin a room where the robot stands."""
+        room = self._next_room()
+        self._rooms = self._surveyor.room = room.number
+        self._building.enter(room.number, self._mopad.world_from_base[:3, 3], **deviations)
+        return room, self._entered(how)
+
+    def _set_down(self, site: int, true_world_from_base: Pose) -> Iterator[Event]:
+        """Have an operator carry the robot to where the scene says, who knows the place by eye only."""
+        self._mopad.set_down(true_world_from_base)
+        room, entered = self._begin("set down", deviation=SET_DOWN_DEVIATION, turn_deviation=SET_DOWN_TURN_DEVIATION)
+        yield entered
+        try:
+            yield from self._explore(room)
+        except MissionError as error:
+            if room.number in self._building.rooms:
+                raise
+            yield self._surveyor.remark(f"at start_{site}: {error}")
+            self._building.drop(room.number)
+
+    def _do(self, room: ExploredRoom) -> Iterator[Event]:
+        """Scan a room, judge its doors, and link it to the others.
+
+        Raises:
+            MissionError: It is no room.
         """
-        mopad = self._mopad
-        for _ in range(MAX_DETOURS):
-            with self._stopwatch("plan"):
-                grid = self._room.grid(structure)
-                plan = self._room.plan(
-                    structure,
-                    voxels,
-                    grid,
-                    world_from_base=mopad.world_from_base,
-                    base_from_scanner=mopad.robot.base_from_scanner,
-                )
-            yield self._event(Planned, scan_number=self._scans, plan=plan, grid=grid)
-            if plan.path is None:
-                return False
-            with self._stopwatch("drive"):
-                drove = self._drive(plan.path, structure.floor_height)
-            yield drove
-            if drove.arrived:
-                return True
-        stopped = replace(plan, chosen=None, path=None, stop_reason=NO_ARRIVAL)
-        yield self._event(Planned, scan_number=self._scans, plan=stopped, grid=grid)
-        return False
+        structure, voxels = yield from self._surveyor.survey(room)
+        yield from self._complete(room, structure, voxels)
 
-    def _drive(self, path: NDArray[np.float64], floor_height: float) -> Drove:
-        """Drive along a path as far as it goes, matching the Hokuyos with the room on the way."""
-        mopad, navigation = self._mopad, self._config.navigation
-        truth: list[Pose] = []
-        angles: list[list[float]] = []
-
-        def watch() -> None:
-            truth.append(mopad.robot.true_world_from_base)
-            angles.append([opening(door) for door in self._scene.true_doors()])
-
-        laser_height = mopad.robot.base_from_lasers[0][2, 3]
-        laser_map = self._room.laser_map(floor_height + laser_height)
-        leg = drive(
-            mopad.robot,
-            path,
-            mopad.measure_lasers,
-            world_from_odometry=mopad.world_from_odometry,
-            footprint=self._room.footprint,
-            parameters=navigation.driving,
-            localise=partial(localise, laser_map, parameters=navigation.localisation),
-            watch=watch,
-        )
-        mopad.believe(leg.world_from_base[-1])
-        if not leg.arrived:  # what stopped it must be on the map; after an arrival the next scan tells more
-            self._room.lasers += zip(leg.laser_scans, leg.world_from_base_at_laser, strict=True)
-            self._look_around()
-        return self._event(
-            Drove,
-            planned_path=path,
-            times=leg.times,
-            world_from_base=leg.world_from_base,
-            laser_scans=leg.laser_scans,
-            outcome=leg.outcome,
-            reason=leg.reason,
-            true_world_from_base=np.array(truth),
-            true_door_angles=np.array(angles),
-        )
-
-    def _look_around(self) -> None:
-        """Note where the robot stands and what the Hokuyos see there."""
-        world_from_base = self._mopad.world_from_base
-        self._room.robot_poses.append(world_from_base)
-        self._room.lasers += [(scan, world_from_base) for scan in self._mopad.measure_lasers()]
-
-    def _find_doors(self, structure: Structure, voxels: VoxelModel) -> Iterator[Event]:
-        """Hand the completed room to the detector; compare what it found with the joints."""
-        room = self._room
+    def _complete(self, room: ExploredRoom, structure: Structure, voxels: VoxelModel) -> Iterator[Event]:
+        """Hand the completed room to the detector; tie it to the others; compare its doors with the joints."""
+        surveyor = self._surveyor
         with self._stopwatch("detect"):
             results = tuple(detect_doors(room_from(structure, voxels, room.views), self._config.detector))
-        yield self._event(
+        yield surveyor.event(
             DoorsDetected,
             results=results,
             floor_height=structure.floor_height,
             ceiling_height=structure.ceiling_height,
         )
-        with self._stopwatch("evaluate"):
-            doors, missed = evaluate(results, self._scene.true_doors(), room=room.number, outline=structure.polygon)
-        yield self._event(DoorsEvaluated, doors=doors, missed=missed)
+        room.views.clear()  # all else that is kept of a room is small
+        with self._stopwatch("tie rooms"):
+            faces = door_faces(results, room=room.number)
+            exits, refused = find_exits(
+                faces,
+                room.points,
+                floor_height=structure.floor_height,
+                footprint=self._footprint,
+                robot_height=self._config.navigation.grid.robot_height,
+                parameters=self._config.navigation.exits,
+            )
+            grid = room.grid(structure.floor_height)
+            before = dict(self._building.world_from_room)
+            self._building.complete(CompletedRoom(room, structure, grid, faces, tuple(exits)))
+            self._walls[room.number] = judged(results)
+        del results
+        yield surveyor.event(
+            RoomsTied,
+            world_from_room=dict(self._building.world_from_room),
+            links=tuple(self._building.links),
+            exits=tuple(way.face.door_id for way in exits),
+            refused=tuple((face.door_id, why) for face, why in refused),
+        )
+        for number, pose in self._building.world_from_room.items():
+            if number == room.number or not np.allclose(pose, before[number], atol=MOVED):
+                yield self._evaluated(number)
 
-    def _event(self, kind: type[Any], **content: Any) -> Any:
-        event = kind(step=self._steps, time=self._mopad.time, room=self._room.number, **content)
-        self._steps += 1
-        return event
+    def _evaluated(self, number: int) -> DoorsEvaluated:
+        """A room's doors, where they lie by now, beside the true ones."""
+        with self._stopwatch("evaluate"):
+            world_from_room = self._building.world_from_room[number]
+            polygon = self._building.rooms[number].structure.polygon
+            in_room = np.column_stack([polygon, np.zeros(len(polygon))])
+            doors, missed = evaluate(
+                placed(self._walls[number], world_from_room),
+                self._scene.true_doors(),
+                room=number,
+                outline=np.asarray(transformed(in_room, world_from_room)[:, :2], float),
+            )
+        here, self._surveyor.room = self._surveyor.room, number
+        evaluated: DoorsEvaluated = self._surveyor.event(DoorsEvaluated, doors=doors, missed=missed)
+        self._surveyor.room = here
+        return evaluated

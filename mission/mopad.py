@@ -16,9 +16,14 @@ from sim.render import Renderer
 from sim.robot import Robot
 from sim.scanner import Scan, Scanner
 from sim.scene import Scene
+from sim.start import upright_pose
 
 SECONDS_PER_PHOTO = 4.0
 """Turning on and charging the flash: our assumption; Riegl and Nikon give no figure [s]."""
+
+
+MAX_SET_DOWN_ERROR, MAX_SET_DOWN_TURN = 0.05, np.radians(2.0)
+"""How far off an operator's word may be where the robot is set down [m, rad]."""
 
 
 class Mopad:
@@ -32,10 +37,13 @@ class Mopad:
             config: Parameters of robot and sensors.
             seed: Of all noise; each sensor draws from a stream of its own.
         """
-        scanner, camera, hokuyo, robot = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4))
+        scanner, camera, hokuyo, robot, operator = (
+            np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(5)
+        )
         self._scene = scene
         self._hokuyo, self._hokuyo_rng = Hokuyo(scene.model, scene.robot_bodies, config.hokuyo), hokuyo
         self.robot = Robot(scene, config.robot, robot)
+        self._operator_rng = operator
         self.world_from_odometry: Pose = np.eye(4)
         """What registration and localisation correct the odometry by."""
         with ExitStack() as stack:  # what fails from here on closes the renderer
@@ -70,6 +78,15 @@ class Mopad:
     def believe(self, world_from_base: Pose) -> None:
         """Correct the odometry: the robot is there now."""
         self.world_from_odometry = world_from_base @ inverted(self.robot.odometry)
+
+    def set_down(self, true_world_from_base: Pose) -> None:
+        """An operator carries the robot to a pose (4, 4) and tells it where it is, as well as one can by eye."""
+        away, bearing, turn = self._operator_rng.uniform([0, -np.pi, -1], [1, np.pi, 1])
+        error = upright_pose(
+            MAX_SET_DOWN_ERROR * away * np.array([np.cos(bearing), np.sin(bearing), 0.0]), MAX_SET_DOWN_TURN * turn
+        )
+        self.robot.set_down(true_world_from_base, true_world_from_base @ error)
+        self.world_from_odometry = np.eye(4)
 
     def scan(self) -> Scan:
         """One panorama; takes the time that the VZ-400 needs."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from mission.exits import ExitParameters
 from mission.following import DrivingParameters
 from mission.grid import Cell, Footprint, GridParameters, OccupancyGrid
 from mission.localisation import LocalisationParameters
@@ -44,6 +45,7 @@ class NavigationParameters(Parameters):
     escape: float = Field(
         default=1.5, ge=0.0, le=5.0, description="Furthest straight move out of a spot too tight to turn in [m]"
     )
+    exits: ExitParameters = ExitParameters()
     grid: GridParameters = GridParameters()
     driving: DrivingParameters = DrivingParameters()
     localisation: LocalisationParameters = LocalisationParameters()

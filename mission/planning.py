@@ -37,6 +37,7 @@ class PlanningParameters(Parameters):
     """What a scan is worth, and when to stop."""
 
     max_scans: int = Field(default=6, ge=1, le=100, description="Scans of a room, the first included")
+    max_rooms: int = Field(default=30, ge=1, le=1000, description="Rooms of a mission")
     target_coverage: float = Field(default=0.98, gt=0.0, le=1.0, description="Share of the structure's area")
     min_value: float = Field(default=0.5, ge=0.0, le=100.0, description="A scan must be worth so much [m2]")
     min_separation: float = Field(default=0.5, ge=0.0, le=5.0, description="From the places scanned before [m]")

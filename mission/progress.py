@@ -22,7 +22,10 @@ from mission.events import (
     Planned,
     Registered,
     Remarked,
+    RoomEntered,
+    RoomsTied,
 )
+from mission.recording.sentences import sentence
 
 
 class TerminalProgress:
@@ -62,6 +65,10 @@ class TerminalProgress:
                 x, y = event.world_from_base[:2, 3]
                 self._console.print("[dim]mission time[/dim]")
                 self._say(event, f"[bold]{event.scene}[/bold], seed {event.seed}: MoPAD starts at ({x:.2f}, {y:.2f})")
+            case RoomEntered() if event.how != "start":
+                self._say(event, f"[bold]{sentence(event)}[/bold]")
+            case RoomsTied():
+                self._say(event, sentence(event))
             case Registered():
                 x, y = event.world_from_scanner[:2, 3]
                 fit = event.reason if event.rmse == 0 or not event.accepted else f"residual {event.rmse * 1e3:.1f} mm"

@@ -87,6 +87,12 @@ class Registrar:
             self._map = self._map.joined(place(sample, registration.world_from_scanner), self.parameters.spacing)
         return registration
 
+    def compare(
+        self, sample: ScanSample, guess_world_from_scanner: Pose, parameters: RegistrationParameters
+    ) -> Registration:
+        """Find a scan's pose by other limits, and leave the map as it is."""
+        return register(sample, guess_world_from_scanner, self._map, parameters)
+
 
 @dataclass(frozen=True, eq=False)
 class _Map:

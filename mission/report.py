@@ -23,10 +23,13 @@ from mission.events import (
     MissionStarted,
     Planned,
     Registered,
+    RoomEntered,
+    RoomsTied,
     Structured,
 )
 from mission.memory import peak_memory
-from mission.rigid import angle_between
+from mission.pose_graph import Link
+from mission.rigid import Pose, angle_between
 
 SCHEMA = 1
 """Version of the layout of doors.json."""
@@ -44,6 +47,12 @@ class RoomReport:
     stop_reason: str | None = None
     doors: tuple[DoorEvaluation, ...] = ()
     missed: tuple[str, ...] = ()
+    how: str = "start"
+    """How the robot came in."""
+    door: str | None = None
+    """Through which door."""
+    exits: tuple[str, ...] = ()
+    """Doors that it could drive through."""
 
 
 @dataclass
@@ -56,11 +65,21 @@ class Report:
     metres: float = 0.0
     """Way driven, as odometry has it [m]."""
     registrations: list[Registered] = field(default_factory=list)
+    tied: RoomsTied | None = None
+    """The last of them."""
+    contacts: int = 0
+    """Legs that ended at a touch."""
 
     def handle(self, event: Event) -> None:
         """Take one event."""
-        room = self.rooms.setdefault(event.room, RoomReport(event.room))
+        room = self.rooms.get(event.room) or RoomReport(event.room)  # of a room that is never entered nothing is kept
         match event:
+            case RoomEntered():
+                self.rooms[event.room] = room
+                room.how, room.door = event.how, event.door
+            case RoomsTied():
+                self.tied = event
+                room.exits = event.exits
             case MissionStarted():
                 self.started = event
             case Registered():
@@ -76,6 +95,7 @@ class Report:
             case Drove():
                 steps = np.diff(event.world_from_base[:, :2, 3], axis=0)
                 self.metres += float(np.linalg.norm(steps, axis=1).sum())
+                self.contacts += event.outcome == "contact"
             case DoorsDetected():
                 room.walls = len(event.results)
             case DoorsEvaluated():
@@ -98,7 +118,14 @@ class Report:
                 }
                 for room in self.rooms.values()
             ],
+            "links": [_link(link) for link in self._links() if link.doors],
         }
+
+    def _links(self) -> tuple[Link, ...]:
+        return self.tied.links if self.tied else ()
+
+    def _world_from_room(self, room: int) -> Pose:
+        return self.tied.world_from_room.get(room, np.eye(4)) if self.tied else np.eye(4)
 
     def metrics(self) -> dict[str, float | int | None]:
         """Counts, and means and maxima over the found doors; None where there is nothing to average."""
@@ -116,7 +143,7 @@ class Report:
             "e_rel": _mean([o.relative_error for o in found]),
             "angle_mae_deg": _mean(errors),
             "angle_max_deg": _rounded(max(errors)) if errors else None,
-            "coverage": _mean([room.coverage for room in self.rooms.values()]),
+            "coverage": _mean([room.coverage for room in self.rooms.values() if room.walls]),
         }
 
     def summary(self, stage_seconds: Mapping[str, float], wall_clock: float) -> dict[str, Any]:
@@ -136,6 +163,9 @@ class Report:
             "rooms": [
                 {
                     "id": room.id,
+                    "entered": room.how,
+                    "through": room.door,
+                    "exits": list(room.exits),
                     "scans": room.scans,
                     "coverage": _rounded(room.coverage),
                     "stop_reason": room.stop_reason,
@@ -144,8 +174,9 @@ class Report:
                 for room in self.rooms.values()
             ],
             "metres_driven": _rounded(self.metres),
+            "contacts": self.contacts,
             "mission_seconds": _rounded(self.finished.time / 1e9) if self.finished else None,
-            "registration": [_registration(event) for event in self.registrations],
+            "registration": [_registration(event, self._world_from_room(event.room)) for event in self.registrations],
             "wall_clock_seconds": round(wall_clock, 3),
             "stage_seconds": {stage: round(seconds, 3) for stage, seconds in stage_seconds.items()},
             "peak_memory_bytes": peak_memory(),
@@ -196,11 +227,17 @@ def _truth(evaluation: DoorEvaluation) -> dict[str, Any] | None:
     }
 
 
-def _registration(event: Registered) -> dict[str, Any]:
-    offset = event.world_from_scanner[:3, 3] - event.true_world_from_scanner[:3, 3]
-    angle = angle_between(event.true_world_from_scanner, event.world_from_scanner)
+def _link(link: Link) -> dict[str, Any]:
+    return {"rooms": [link.first, link.second], "doors": list(link.doors or ())}
+
+
+def _registration(event: Registered, world_from_room: Pose) -> dict[str, Any]:
+    world_from_scanner = world_from_room @ event.world_from_scanner
+    offset = world_from_scanner[:3, 3] - event.true_world_from_scanner[:3, 3]
+    angle = angle_between(event.true_world_from_scanner, world_from_scanner)
     return {
         "scan": event.scan_number,
+        "room": event.room,
         "accepted": event.accepted,
         "reason": event.reason,
         "fitness": _rounded(event.fitness),

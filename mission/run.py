@@ -53,7 +53,8 @@ def run(options: argparse.Namespace) -> int:
     try:
         bars = dict(_setting("--fail-under", text) for text in options.fail_under)
         _check_metrics(bars)
-        settings = [*options.set, *([f"planning.max_scans={options.max_scans}"] if options.max_scans else [])]
+        limits = {"planning.max_scans": options.max_scans, "planning.max_rooms": options.max_rooms}
+        settings = [*options.set, *(f"{key}={limit}" for key, limit in limits.items() if limit)]
         config = read_config(options.config, settings)
         angles = {name: math.radians(angle) for name, angle in (_setting("--door", text) for text in options.door)}
         scene = load_scene(find_scene(options.scene), door_angles=angles, keyframe=options.keyframe)

@@ -139,10 +139,16 @@ class Robot:
         """Stand still with the brakes on while a sensor measures: the clock runs, nothing moves [s]."""
         self._waited += duration
 
-    def set_down(self, world_from_base: np.ndarray) -> None:
-        """An operator carries the robot to a known pose (4, 4) on the floor; its odometry starts from there."""
-        set_base(self._model, self._data, self._prefix, world_from_base)
-        self._odometry = np.array(world_from_base, float)
+    def set_down(self, true_world_from_base: np.ndarray, told_world_from_base: np.ndarray | None = None) -> None:
+        """An operator carries the robot to a pose on the floor and tells it where it is.
+
+        Args:
+            true_world_from_base: (4, 4) where it comes to stand.
+            told_world_from_base: (4, 4) what its odometry starts from; the truth by default.
+        """
+        set_base(self._model, self._data, self._prefix, true_world_from_base)
+        told = true_world_from_base if told_world_from_base is None else told_world_from_base
+        self._odometry = np.array(told, float)
         self.settle()
 
     def contacts(self) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from sim.doors import Door, DoorTruth, find_doors, measure_door, put_doors
 from sim.errors import SimError
 from sim.leaves import bodies_below
 from sim.rays import Rays, geom_name
-from sim.start import freest_spot, pose_on_floor, require_surroundings
+from sim.start import freest_spot, pose_on_floor, require_surroundings, set_down_poses
 
 log = logging.getLogger(__name__)
 
@@ -51,6 +51,9 @@ class Scene:
     """What closes which opening; found once."""
     world_from_base: np.ndarray
     """(4, 4) start pose of the robot's base."""
+    set_downs: tuple[np.ndarray, ...]
+    """(4, 4) poses of the base at which an operator sets the robot down where no way leads on: the sites `start_2`,
+    `start_3`... in this order."""
     robot_bodies: frozenset[int]
     """Ids of the robot's bodies: its own sensors do not see them."""
     robot_prefix: str
@@ -65,7 +68,8 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
     """Load any MJCF, put MoPAD into it and set the doors.
 
     The state is the keyframe's of that name, else the first keyframe, else qpos0. MoPAD starts at a site named
-    `start`, else at the freest spot inside a room; a scene that already holds a MoPAD keeps it where it is. Doors stay
+    `start`, else at the freest spot inside a room; a scene that already holds a MoPAD keeps it where it is; sites
+    `start_2`, `start_3`... say where it may be set down again. Doors stay
     where they are put, as if wedged. The scene's own options stay, except for what driving needs: the earth's gravity
     (where there was none, the scene's own bodies go on floating) and no water, contacts at the surface and actuation,
     the implicitfast integrator and a solver that converges, at most 4 ms a step, and a plane to drive on where the
@@ -99,9 +103,10 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
         _free_to_swing(model, data, leaves)
         _let_stand(model, data, robot_bodies, pose)
         _require_free(model, data, robot_bodies, pose)
+        set_downs = set_down_poses(model, data, Rays(model, data, robot_bodies), FOOTPRINT)
     except SimError as error:
         raise SimError(f"scene {path}: {error}") from None
-    return Scene(model, data, path.name, spec.to_xml(), doors, pose, robot_bodies, prefix)
+    return Scene(model, data, path.name, spec.to_xml(), doors, pose, set_downs, robot_bodies, prefix)
 
 
 def _warn(text: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -122,6 +123,26 @@ def require_surroundings(rays: Rays, world_from_base: np.ndarray, footprint: tup
     above = rays.cast(position + [0, 0, _BODY_HEIGHTS[0]], np.array([[0.0, 0, 1]]), HEADROOM - _BODY_HEIGHTS[0])
     if np.isfinite(above.distances[0]):
         raise SimError(f"the start at {_at(position)} is inside {rays.name(int(above.geoms[0]))}")
+
+
+def set_down_poses(
+    model: mujoco.MjModel, data: mujoco.MjData, rays: Rays, footprint: tuple[float, float]
+) -> tuple[np.ndarray, ...]:
+    """World poses (4, 4) of the base at the sites `start_2`, `start_3`..., in the order of their numbers.
+
+    Raises:
+        SimError: there is no floor under one, no wall around it, or something in the way; says which.
+    """
+    numbered = [(re.fullmatch(r"start_(\d+)", model.site(site).name), site) for site in range(model.nsite)]
+    poses = []
+    for _, site in sorted((int(match[1]), site) for match, site in numbered if match):
+        try:
+            pose = pose_on_floor(rays, data.site_xpos[site], data.site_xmat[site].reshape(3, 3)[:, 0])
+            require_surroundings(rays, pose, footprint)
+        except SimError as error:
+            raise SimError(f"site {model.site(site).name}: {error}") from None
+        poses.append(pose)
+    return tuple(poses)
 
 
 def upright_pose(position: np.ndarray, heading: float) -> np.ndarray:

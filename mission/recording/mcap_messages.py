@@ -34,6 +34,12 @@ from mission.recording.drawing import ARCHIVE_QUALITY, CELL_COLOURS, UNCOLOURED,
 MAP = "map"
 """Frame of the scene's world, in which the mission's map is made."""
 
+
+def room_frame(room: int) -> str:
+    """Frame of a room, in which all that is measured in it is given; links between rooms move it in the map."""
+    return f"room {room}"
+
+
 SEEN, UNSEEN = 255, 254
 """Alpha of points: 254 marks a grey that stands in where no photograph saw the point. Viewers show both alike."""
 
@@ -101,28 +107,33 @@ def pose(world_from_x: NDArray[np.float64]) -> Pose:
 
 
 def cloud(
-    time: int, points_in_world: NDArray[np.float32], colours: NDArray[np.uint8], coloured: NDArray[np.bool_]
+    time: int,
+    points: NDArray[np.float32],
+    colours: NDArray[np.uint8],
+    coloured: NDArray[np.bool_],
+    *,
+    frame: str,
 ) -> PointCloud:
-    """All points of a scan, in the map, rounded to the recording's grid."""
+    """All points of a scan, in a room's frame, rounded to the recording's grid."""
     return PointCloud(
         timestamp=timestamp(time),
-        frame_id=MAP,
+        frame_id=frame,
         pose=_here(),
         point_stride=16,
         fields=[PackedElementField(name=name, offset=4 * place, type=_FLOAT) for place, name in enumerate("xyz")]
         + [PackedElementField(name=name, offset=12 + place, type=_BYTE) for place, name in enumerate(RGBA)],
-        data=_packed(points_in_world, colours, coloured),
+        data=_packed(points, colours, coloured),
     )
 
 
-def _packed(points_in_world: NDArray[np.float32], colours: NDArray[np.uint8], coloured: NDArray[np.bool_]) -> bytes:
+def _packed(points: NDArray[np.float32], colours: NDArray[np.uint8], coloured: NDArray[np.bool_]) -> bytes:
     """Four words a point, x y z rgba; block by block, for a block stays in the processor's cache."""
-    packed = np.empty((len(points_in_world), 4), "<f4")
+    packed = np.empty((len(points), 4), "<f4")
     tints = packed.view("<u4")[:, 3]
     grey = np.array([*UNCOLOURED, UNSEEN], np.uint8).view("<u4")[0]
     for start in range(0, len(packed), _BLOCK):
         block = slice(start, start + _BLOCK)
-        packed[block, :3] = on_grid(points_in_world[block])
+        packed[block, :3] = on_grid(points[block])
         rgba = np.full((len(packed[block]), 4), SEEN, np.uint8)
         rgba[:, :3] = colours[block]
         tints[block] = np.where(coloured[block], rgba.view("<u4")[:, 0], grey)
@@ -165,7 +176,9 @@ def laser_scan(
     )
 
 
-def occupancy(time: int, origin: NDArray[np.float64], resolution: float, cells: NDArray[np.uint8]) -> Grid:
+def occupancy(
+    time: int, origin: NDArray[np.float64], resolution: float, cells: NDArray[np.uint8], *, frame: str
+) -> Grid:
     """An occupancy grid: colours for viewers, and the state of the cell (0 unknown, 1 free, 2 occupied)."""
     packed = np.concatenate([CELL_COLOURS[np.minimum(cells, 2)], cells[:, :, None]], axis=2)
     names = (*RGBA, "state")
@@ -173,7 +186,7 @@ def occupancy(time: int, origin: NDArray[np.float64], resolution: float, cells: 
     corner[:2, 3] = origin
     return Grid(
         timestamp=timestamp(time),
-        frame_id=MAP,
+        frame_id=frame,
         pose=pose(corner),
         column_count=cells.shape[1],
         cell_size=Vector2(x=resolution, y=resolution),

@@ -9,13 +9,14 @@ from foxglove.messages import SceneEntity, SceneEntityDeletion, SceneEntityDelet
 from numpy.typing import NDArray
 
 from detector.result import Door, WallResult
-from mission.events import DoorsDetected, DoorsEvaluated, Drove, Labelled, Planned, Registered, Structured
+from mission.events import DoorsDetected, DoorsEvaluated, Drove, Labelled, Planned, Registered, RoomsTied, Structured
 from mission.recording import mcap_messages as messages
 from mission.recording.drawing import TRUTH_COLOUR, WALL_COLOUR, Outlined, angle_label, closed, outline, palette, quads
 
 if TYPE_CHECKING:
     from mission.evaluation import DoorEvaluation
     from mission.planning import ScanCandidate
+    from mission.pose_graph import Link
     from sim.robot import RobotShape
 
 NAN = float("nan")
@@ -111,7 +112,8 @@ def wall(time: int, room: int, number: int, rectangle: Outlined) -> SceneEntity:
     """A wall's outline and name."""
     name, line = f"wall {room}.{number}", outline(rectangle)
     words = messages.text(line[2:4].mean(axis=0), name, WALL_COLOUR)
-    return messages.scene_entity(time, name, lines=messages.lines([line], WALL_COLOUR), texts=[words])
+    frame = messages.room_frame(room)
+    return messages.scene_entity(time, name, frame=frame, lines=messages.lines([line], WALL_COLOUR), texts=[words])
 
 
 def door(time: int, evaluation: DoorEvaluation, number: int) -> list[SceneEntity]:
@@ -127,6 +129,28 @@ def door(time: int, evaluation: DoorEvaluation, number: int) -> list[SceneEntity
         messages.scene_entity(time, name, lines=edges, triangles=[face], texts=[label]),
         messages.scene_entity(time, f"truth of {name}", lines=truth),
     ]
+
+
+def rooms(event: RoomsTied) -> dict[str, Any]:
+    """mission.Rooms."""
+    return {
+        "rooms": [{"room": room, "world_from_room": _flat(pose)} for room, pose in event.world_from_room.items()],
+        "links": [_link(link) for link in event.links],
+        "exits": list(event.exits),
+        "refused": [f"{door}: {why}" for door, why in event.refused],
+    }
+
+
+def _link(link: Link) -> dict[str, Any]:
+    return {
+        "first": link.first,
+        "second": link.second,
+        "doors": list(link.doors or ()),
+        "in_first": _flat(link.in_first),
+        "in_second": _flat(link.in_second),
+        "turn": link.turn,
+        "deviations": [*_flat(link.deviations), link.turn_deviation],
+    }
 
 
 def everything(time: int) -> SceneEntityDeletion:

@@ -15,7 +15,7 @@ message Step                              # one an event, after all its other me
   uint32 room                             # from 1
   string event                            # name of the event
 
-message Registration                      # where a scan is in the map
+message Registration                      # where a scan is in its room's frame
   uint32 scan                             # from 1
   repeated double guess_world_from_scanner  # from odometry, 4 x 4 row by row [m]
   repeated double world_from_scanner      # 4 x 4 row by row [m]
@@ -26,7 +26,7 @@ message Registration                      # where a scan is in the map
   repeated double true_world_from_scanner  # truth, 4 x 4 row by row [m]
 
 message Wall                              # a rectangle as seen from inside the room
-  repeated double origin                  # bottom left corner (x, y, z) in the map [m]
+  repeated double origin                  # bottom left corner (x, y, z) in the room's frame [m]
   repeated double u                       # unit vector to the right
   repeated double v                       # unit vector up
   double width                            # [m]
@@ -128,6 +128,25 @@ message DetectedLeaf
   double opening_angle_std                # [rad]
   string opens                            # inward or outward, else empty
   double slid                             # way of a sliding leaf along the wall, to the right [m]
+
+message Rooms                             # the graph of rooms and doors
+  repeated RoomNode rooms
+  repeated RoomLink links
+  repeated string exits                   # doors of the last room that the robot can drive through
+  repeated string refused                 # the others, each with the reason
+
+message RoomNode
+  uint32 room                             # from 1
+  repeated double world_from_room         # where its frame lies in the map, 4 x 4 row by row [m]
+
+message RoomLink                          # what ties two rooms together
+  uint32 first                            # room
+  uint32 second                           # room
+  repeated string doors                   # the two faces of the door that links them; none for a link by scans
+  repeated double in_first                # x, y, z of a place in the first room's frame [m]
+  repeated double in_second               # and in the second's [m]
+  double turn                             # of the second frame in the first, about z [rad]
+  repeated double deviations              # 1 sigma of the place [m], then of the turn [rad]
 
 message Outcome                           # how the mission ended
   string outcome                          # completed, interrupted or failed

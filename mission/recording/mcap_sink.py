@@ -18,6 +18,7 @@ from foxglove.messages import (
     Log,
     LogLevel,
     PosesInFrame,
+    SceneEntity,
     SceneUpdate,
 )
 from numpy.typing import NDArray
@@ -34,15 +35,18 @@ from mission.events import (
     Photographed,
     Planned,
     Registered,
+    RoomEntered,
+    RoomsTied,
     Structured,
 )
 from mission.joints import opening
 from mission.recording import mcap_messages as messages
 from mission.recording import mcap_records as records
 from mission.recording.drawing import label_colours
-from mission.recording.mcap_messages import MAP
+from mission.recording.mcap_messages import MAP, room_frame
 from mission.recording.mcap_topics import open_channels
 from mission.recording.sentences import level, sentence
+from mission.rigid import Pose
 
 if TYPE_CHECKING:
     from sim.hokuyo import LaserScan
@@ -66,6 +70,8 @@ class McapSink:
         self._path = path
         self._last_log_time = 0
         self._joints: tuple[str, ...] = ()
+        self._world_from_room: dict[int, Pose] = {}
+        self._walls: dict[int, list[SceneEntity]] = {}
 
     def __enter__(self) -> Self:
         self._context = foxglove.Context()  # never the global one, whose topics leak between recordings; kept alive
@@ -114,6 +120,20 @@ class McapSink:
         self._log("/robot", SceneUpdate(entities=[records.robot(self._now, event.robot)]))
 
     @_record.register
+    def _(self, event: RoomEntered) -> None:
+        self._world_from_room[event.room] = event.world_from_room
+        self._log("/tf", self._transforms((MAP, room_frame(event.room), event.world_from_room)))
+        base = event.world_from_room @ event.world_from_base
+        self._log("/tf", self._transforms((MAP, "base", base), (MAP, "true base", event.true_world_from_base)))
+
+    @_record.register
+    def _(self, event: RoomsTied) -> None:
+        self._world_from_room |= event.world_from_room
+        rooms = [(MAP, room_frame(room), pose) for room, pose in event.world_from_room.items()]
+        self._log("/tf", self._transforms(*rooms))
+        self._log("/building/rooms", records.rooms(event))
+
+    @_record.register
     def _(self, event: Photographed) -> None:
         for number, photo in enumerate(event.photos, start=1):
             frame = f"scan {event.scan_number} photo {number}"
@@ -125,18 +145,24 @@ class McapSink:
 
     @_record.register
     def _(self, event: Registered) -> None:
-        self._log("/tf", self._transforms((MAP, f"scan {event.scan_number}", event.world_from_scanner)))
+        frame = f"scan {event.scan_number}"
+        self._log("/tf", self._transforms((room_frame(event.room), frame, event.world_from_scanner)))
         self._log("/scan/registration", records.registration(event))
 
     @_record.register
     def _(self, event: Coloured) -> None:
         view = event.view
-        self._log("/scan/points", messages.cloud(self._now, view.points_in_world, view.colours, view.coloured))
+        cloud = messages.cloud(
+            self._now, view.points_in_world, view.colours, view.coloured, frame=room_frame(event.room)
+        )
+        self._log("/scan/points", cloud)
 
     @_record.register
     def _(self, event: Structured) -> None:
         self._log("/room/structure", records.structure(event))
-        entities = [records.wall(self._now, event.room, n, w) for n, w in enumerate(event.structure.walls, start=1)]
+        walls = [records.wall(self._now, event.room, n, w) for n, w in enumerate(event.structure.walls, start=1)]
+        self._walls[event.room] = walls
+        entities = [wall for walls in self._walls.values() for wall in walls]
         self._log("/room/walls", SceneUpdate(deletions=[records.everything(self._now)], entities=entities))
 
     @_record.register
@@ -144,21 +170,22 @@ class McapSink:
         model = event.voxels
         self._log("/room/voxels", records.voxels(event))
         centres, colours = model.cells_in_world.astype(np.float32), label_colours(model.labels)
-        self._log("/room/voxel_centres", messages.cloud(self._now, centres, colours, np.ones(len(centres), bool)))
+        known, frame = np.ones(len(centres), bool), room_frame(event.room)
+        self._log("/room/voxel_centres", messages.cloud(self._now, centres, colours, known, frame=frame))
 
     @_record.register
     def _(self, event: Planned) -> None:
         self._log("/plan/candidates", records.plan(event))
         grid = event.grid
-        self._log("/plan/grid", messages.occupancy(self._now, grid.origin, grid.resolution, grid.cells))
+        frame = room_frame(event.room)
+        self._log("/plan/grid", messages.occupancy(self._now, grid.origin, grid.resolution, grid.cells, frame=frame))
 
     @_record.register
     def _(self, event: Drove) -> None:
         self._log_way(event)
         path = [messages.pose(records.on_floor(point)) for point in event.planned_path]
-        self._log(
-            "/drive/planned_path", PosesInFrame(timestamp=messages.timestamp(self._now), frame_id=MAP, poses=path)
-        )
+        planned = PosesInFrame(timestamp=messages.timestamp(self._now), frame_id=room_frame(event.room), poses=path)
+        self._log("/drive/planned_path", planned)
         self._log("/drive/leg", records.drive(event))
 
     @_record.register
@@ -177,12 +204,13 @@ class McapSink:
 
     def _log_way(self, event: Drove) -> None:
         """Poses, joints and Hokuyo scans of a leg, in the order of their times."""
+        world_from_room = self._world_from_room.get(event.room, np.eye(4))
         scans = sorted(event.laser_scans, key=lambda scan: scan.time)
         for place, time in enumerate(event.times):
             while scans and scans[0].time <= time:
                 self._log_laser(scans.pop(0))
             when = EPOCH + int(time)
-            base, truth = event.world_from_base[place], event.true_world_from_base[place]
+            base, truth = world_from_room @ event.world_from_base[place], event.true_world_from_base[place]
             self._log("/tf", self._transforms((MAP, "base", base), (MAP, "true base", truth), when=when), when=when)
             self._log("/truth/joints", self._joint_states(when, event.true_door_angles[place]), when=when)
         for scan in scans:

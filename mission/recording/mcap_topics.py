@@ -29,12 +29,13 @@ TOPICS = {
     "/log": Topic("foxglove.Log", "each event in a line for people"),
     "/tf": Topic(
         "foxglove.FrameTransforms",
-        "map -> base (odometry and registration), map -> true base, base -> scanner, map -> scan N, scan N -> photo K",
+        "map -> room N (moves as links tie rooms), room N -> scan M, scan M -> photo K, "
+        "map -> base (odometry and registration), map -> true base, base -> scanner",
     ),
     "/robot": Topic("foxglove.SceneUpdate", "body of the robot in the frame base [m]"),
     "/scan/points": Topic(
         "foxglove.PointCloud",
-        "all points of a scan in the frame map, rounded to 1/512 m; sRGB, alpha 254 where no photograph saw the point",
+        "all points of a scan in its room's frame, to 1/512 m; sRGB, alpha 254 where no photograph saw the point",
     ),
     "/scan/registration": Topic("mission.Registration", "pose of a scan: guess, registered, true"),
     "/camera/image": Topic("foxglove.CompressedImage", "photographs, JPEG, one after the other"),
@@ -43,13 +44,16 @@ TOPICS = {
     "/room/structure": Topic("mission.Structure", "floor, ceiling, walls, outline of the floor [m]"),
     "/room/walls": Topic("foxglove.SceneUpdate", "outlines of the walls"),
     "/room/voxels": Topic("mission.Voxels", "labels of the room's voxels, coverage"),
-    "/room/voxel_centres": Topic("foxglove.PointCloud", "the same for the eye, coloured by label, frame map [m]"),
+    "/room/voxel_centres": Topic("foxglove.PointCloud", "the same for the eye, coloured by label [m]"),
     "/plan/candidates": Topic("mission.Plan", "all candidates for the next scan with their scores, and the choice"),
     "/plan/grid": Topic("foxglove.Grid", "occupancy [m], state 0 unknown, 1 free, 2 occupied"),
     "/drive/planned_path": Topic("foxglove.PosesInFrame", "way points of a leg [m]"),
     "/drive/leg": Topic("mission.Drive", "how a leg went"),
-    "/doors/detected": Topic("mission.DetectedDoors", "walls and doors as the detector has them [m, rad]"),
-    "/doors/estimates": Topic("mission.DoorEstimates", "doors beside the true ones [m, rad]"),
+    "/building/rooms": Topic("mission.Rooms", "rooms, where they lie, and the doors that link them"),
+    "/doors/detected": Topic(
+        "mission.DetectedDoors", "walls and doors as the detector has them, in the frame of the room [m, rad]"
+    ),
+    "/doors/estimates": Topic("mission.DoorEstimates", "doors beside the true ones, in the map [m, rad]"),
     "/doors/scene": Topic("foxglove.SceneUpdate", "doors at their estimated angles, and the true leaves"),
     "/truth/joints": Topic("foxglove.JointStates", "true doors, from closed [rad; sliding doors m]"),
 }

@@ -99,7 +99,9 @@ class RerunSink:
                 self._send_layout(())
             case Structured() if event.structure.walls and event.room not in self._known_rooms:
                 self._known_rooms.add(event.room)
-                self._outlook = outlook(np.concatenate([outline(wall) for wall in event.structure.walls]))
+                walls = [outline(wall) for wall in event.structure.walls]
+                before = [self._outlook.seen] if len(self._known_rooms) > 1 else []
+                self._outlook = outlook(np.concatenate([*before, *walls]))
                 self._send_layout(())
             case DoorsDetected():
                 self._walls += _wall_tabs(event)

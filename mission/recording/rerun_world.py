@@ -18,6 +18,8 @@ from mission.events import (
     MissionStarted,
     Pose,
     Registered,
+    RoomEntered,
+    RoomsTied,
     Structured,
 )
 from mission.recording import entities
@@ -57,6 +59,8 @@ class World:
         self._scanner_from_base: Pose = np.eye(4)
         self._floor = 0.0
         self._scan_number = 0
+        self._world_from_room: dict[int, Pose] = {}
+        self._in_room: dict[str, int] = {}
 
     @singledispatchmethod
     def draw(self, event: Event) -> None:
@@ -75,9 +79,29 @@ class World:
         log_pose(self._rec, entities.ROBOT, event.world_from_base)
 
     @draw.register
+    def _(self, event: RoomEntered) -> None:
+        self._world_from_room[event.room] = event.world_from_room
+        log_pose(self._rec, entities.ROBOT, event.world_from_room @ event.world_from_base)
+
+    @draw.register
+    def _(self, event: RoomsTied) -> None:
+        """Move what was drawn in the rooms' frames to where the rooms lie by now."""
+        moved = {
+            room
+            for room, pose in event.world_from_room.items()
+            if not np.array_equal(pose, self._world_from_room.get(room, np.eye(4)))
+        }
+        self._world_from_room |= event.world_from_room
+        for entity, room in self._in_room.items():
+            if room in moved:
+                log_pose(self._rec, entity, event.world_from_room[room])
+
+    @draw.register
     def _(self, event: Registered) -> None:
         self._scan_number = event.scan_number
-        log_pose(self._rec, entities.ROBOT, event.world_from_scanner @ self._scanner_from_base)
+        world_from_room = self._world_from_room.get(event.room, np.eye(4))
+        log_pose(self._rec, entities.ROBOT, world_from_room @ event.world_from_scanner @ self._scanner_from_base)
+        self._belongs(child(entities.CLOUDS, f"{event.scan_number:03d}"), event.room)
         place = child(entities.CLOUDS, f"{event.scan_number:03d}", "scanner")
         log_pose(self._rec, place, event.world_from_scanner)
         self._rec.log(
@@ -115,14 +139,29 @@ class World:
     def _(self, event: Drove) -> None:
         self._drive(event)
         leg = f"{event.step:04d}"
+        self._belongs(child(entities.DRIVEN, leg), event.room)
         self._path(child(entities.DRIVEN, leg), event.world_from_base[:, :2, 3], colour=PATH_COLOUR, radius=0.025)
         self._path(child(entities.TRUE_PATH, leg), event.true_world_from_base[:, :2, 3], colour=TRUTH_COLOUR)
-        self._path(entities.PLANNED, event.planned_path, colour=PLAN_COLOUR, radius=0.012)
+        self._path(entities.PLANNED, self._in_world(event.room, event.planned_path), colour=PLAN_COLOUR, radius=0.012)
         self._draw_lasers(event)
+
+    def _in_world(self, room: int, way: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(P, 2) places of a room's frame, in the world."""
+        level = np.column_stack([way, np.zeros(len(way))])
+        return np.asarray(transformed(level, self._world_from_room.get(room, np.eye(4)))[:, :2], float)
+
+    def _belongs(self, entity: str, room: int) -> None:
+        """Draw an entity in the frame of a room."""
+        if entity not in self._in_room:
+            self._in_room[entity] = room
+            pose = self._world_from_room.get(room, np.eye(4))
+            if not np.array_equal(pose, np.eye(4)):
+                log_pose(self._rec, entity, pose)
 
     def _drive(self, event: Drove) -> None:
         """The robot's poses, each at its own mission time."""
         count = len(event.times)
+        poses = self._world_from_room.get(event.room, np.eye(4)) @ event.world_from_base
         self._rec.send_columns(
             entities.ROBOT,
             [
@@ -132,8 +171,8 @@ class World:
                 rr.TimeColumn("room", sequence=np.full(count, event.room)),
             ],
             rr.Transform3D.columns(
-                translation=event.world_from_base[:, :3, 3],
-                mat3x3=event.world_from_base[:, :3, :3].transpose(0, 2, 1).reshape(count, 9),  # column by column
+                translation=poses[:, :3, 3],
+                mat3x3=poses[:, :3, :3].transpose(0, 2, 1).reshape(count, 9),  # column by column
             ),
         )
 
@@ -145,6 +184,7 @@ class World:
         entity = child(entities.CLOUDS, number, "points")
         self._log_points(entity, cloud.points[below], cloud.colours[below])
         if ceiling is not None:
+            self._belongs(child(entities.CEILINGS, number), room)
             self._log_points(child(entities.CEILINGS, number), cloud.points[~below], cloud.colours[~below])
             self._waiting = None
 
@@ -154,6 +194,7 @@ class World:
     def _draw_walls(self, room: int, outlines: list[NDArray[np.float64]]) -> None:
         names = [f"wall {entities.wall_name(room, number)}" for number in range(1, len(outlines) + 1)]
         entity = child(entities.WALLS, room)
+        self._belongs(entity, room)
         self._rec.log(f"{entity}/outlines", rr.LineStrips3D(outlines, colors=WALL_COLOUR, radii=0.01))
         tops = [0.85 * line[3] + 0.15 * line[2] for line in outlines]  # left in the upper edge: doors are labelled, too
         self._rec.log(

@@ -17,6 +17,8 @@ from mission.events import (
     Planned,
     Registered,
     Remarked,
+    RoomEntered,
+    RoomsTied,
     Scanned,
     Structured,
 )
@@ -29,6 +31,10 @@ def sentence(event: Event) -> str:
         case MissionStarted():
             x, y = event.world_from_base[:2, 3]
             return f"mission in {event.scene} with seed {event.seed}, start at ({x:.2f}, {y:.2f})"
+        case RoomEntered():
+            return _entered(event)
+        case RoomsTied():
+            return _tied(event)
         case Scanned():
             ranges = event.scan.ranges
             returns = np.count_nonzero(np.isfinite(ranges)) / max(ranges.size, 1)
@@ -69,6 +75,19 @@ def level(event: Event) -> str:
         case MissionFinished() if event.outcome != "completed":
             return "WARN"
     return "INFO"
+
+
+def _entered(event: RoomEntered) -> str:
+    ways = {"start": "at the start", "set down": "set down by an operator", "door": f"through door {event.door}"}
+    x, y = event.world_from_base[:2, 3]
+    return f"room {event.room}, {ways[event.how]}, at ({x:.2f}, {y:.2f})"
+
+
+def _tied(event: RoomsTied) -> str:
+    doors = [f"{link.doors[0]} is {link.doors[1]}" for link in event.links if link.doors and link.second == event.room]
+    exits = [f"exits: {', '.join(event.exits)}"] if event.exits else ["no exit"]
+    refused = [f"{door}: {why}" for door, why in event.refused]
+    return f"room {event.room}: " + "; ".join([*doors, *exits, *refused])
 
 
 def _registered(event: Registered) -> str:

@@ -26,6 +26,7 @@ from detector.room import View, VoxelLabel, Wall
 from mission.evaluation import DoorEvaluation
 from mission.grid import Cell, OccupancyGrid
 from mission.planning import Plan, ScanCandidate
+from mission.pose_graph import Link
 from mission.structure import Structure
 from mission.voxels import FLOOR, LevelGrid, VoxelModel
 from mission.wall_finder import WallRectangle
@@ -192,3 +193,18 @@ def grid() -> OccupancyGrid:
     cells = np.full((45, 60), Cell.FREE, np.uint8)
     cells[0], cells[:, 0] = Cell.OCCUPIED, Cell.UNKNOWN
     return OccupancyGrid(np.zeros(2), 0.1, cells)
+
+
+def link() -> Link:
+    """The hall's door, seen from room 1 and from room 2, whose frame lies 10 cm further along x."""
+    return Link(
+        first=1,
+        second=2,
+        in_first=np.array([2.0, 4.1, 2.1]),
+        in_second=np.array([1.9, 4.1, 2.1]),
+        turn=0.0,
+        axes=np.eye(3),
+        deviations=np.array([0.003, 0.005, 0.006]),
+        turn_deviation=0.0005,
+        doors=("1.2-a", "2.4-a"),
+    )

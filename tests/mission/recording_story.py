@@ -44,6 +44,14 @@ def story(count: int = 2000) -> Story:
         made.evaluation(walls[1], 2, doors[1][0], name="hall/door 1", angle=made.JOINT),
         made.evaluation(walls[2], 3, doors[2][0], name="store", angle=0.0),
     )
+    told.tell(
+        events.RoomsTied,
+        172,
+        world_from_room={1: np.eye(4), 2: made.pose(0.1, 0)},
+        links=(made.link(),),
+        exits=("1.2-a",),
+        refused=(("1.3-a", "open by 0.00 m, 0.71 m needed"),),
+    )
     told.tell(events.DoorsEvaluated, 172, doors=judged, missed=("lift",))
     told.tell(events.MissionFinished, 172, outcome="completed", reason="one room")
     return told
@@ -70,6 +78,16 @@ def tell_start(told: Story) -> None:
             made.true_door("store", store, angle=0.0),
             made.true_door("lift", lift, way=0.5),
         ),
+    )
+    here = made.pose(2, 2)
+    told.tell(
+        events.RoomEntered,
+        0,
+        how="start",
+        door=None,
+        world_from_room=np.eye(4),
+        world_from_base=here,
+        true_world_from_base=here,
     )
 
 

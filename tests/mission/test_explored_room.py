@@ -10,6 +10,7 @@ import pytest
 import mission.explored_room
 from mission.config import MissionConfig
 from mission.explored_room import ExploredRoom
+from mission.registration import Registrar
 from sim.scanner import ScannerParameters
 from tests.mission.driving_world import FOOTPRINT, pose
 from tests.mission.test_visibility import scan
@@ -25,9 +26,10 @@ def test_every_stage_believes_in_the_scanner_that_scans(monkeypatch: pytest.Monk
 
         monkeypatch.setattr(mission.explored_room, stage, noted)
     scanner = ScannerParameters(min_range=0.7)
-    room = ExploredRoom(1, FOOTPRINT, MissionConfig(scanner=scanner), samples=[scan((1.0, 0.0, 0.0))])
+    samples = [scan((1.0, 0.0, 0.0))]
+    room = ExploredRoom(1, FOOTPRINT, MissionConfig(scanner=scanner), Registrar(), samples=samples)
     structure = room.structure()
-    voxels, grid = room.voxels(structure), room.grid(structure)
+    voxels, grid = room.voxels(structure), room.grid(structure.floor_height)
     room.plan(structure, voxels, grid, world_from_base=pose(0, 0), base_from_scanner=np.eye(4))
     assert len(believed) == 4 and all(told is scanner for told in believed.values())
 

@@ -15,10 +15,10 @@ from typing import Any
 import pytest
 from mcap.reader import make_reader
 
-import mission.mission
+import mission.surveyor
 from mission.__main__ import main
 from mission.driving import Drive, drive
-from mission.mission import NO_ARRIVAL
+from mission.surveyor import NO_ARRIVAL
 
 pytestmark = pytest.mark.slow
 
@@ -87,7 +87,7 @@ def test_a_robot_that_never_arrives_ends_the_room_and_says_why(tmp_path: Path, m
     def blocked(*arguments: Any, **keywords: Any) -> Drive:
         return replace(drive(*arguments, **keywords), outcome="blocked", reason="a box is in the way")
 
-    monkeypatch.setattr(mission.mission, "drive", blocked)
+    monkeypatch.setattr(mission.surveyor, "drive", blocked)
     assert main(["run", "room.xml", *DRAFT, "--quiet", "--out", str(tmp_path)]) == 0
     (room,) = json.loads((tmp_path / "summary.json").read_text())["rooms"]
     assert (room["scans"], room["stop_reason"]) == (1, NO_ARRIVAL)

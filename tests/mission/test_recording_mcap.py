@@ -154,9 +154,16 @@ def test_how_a_leg_ended_is_recorded(tmp_path: Path, outcome: Any) -> None:
 
 def test_frames_lead_from_the_map_to_each_photograph(recording: Path) -> None:
     parents = {t.child_frame_id: t.parent_frame_id for m in on_topic(recording, "/tf") for t in m.transforms}
-    assert parents["base"] == parents["true base"] == parents["scan 1"] == "map"
+    assert parents["base"] == parents["true base"] == parents["room 1"] == "map"
     for image in on_topic(recording, "/camera/image"):
-        assert parents[parents[image.frame_id]] == "map"
+        assert parents[parents[image.frame_id]] == "room 1"
+
+
+def test_rooms_lie_in_the_map_where_their_links_put_them(recording: Path) -> None:
+    last = {t.child_frame_id: t.translation.x for m in on_topic(recording, "/tf") for t in m.transforms}
+    assert (last["room 1"], last["room 2"]) == (0.0, 0.1)
+    (graph,) = on_topic(recording, "/building/rooms")
+    assert [list(link.doors) for link in graph.links] == [["1.2-a", "2.4-a"]]
 
 
 def test_configuration_and_scene_are_attached(recording: Path) -> None:

@@ -32,7 +32,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "/world/scans/001/points",
         "/world/scans/002/points",
         "/world/ceiling/001",
-        "/world/path/driven/0008",
+        "/world/path/driven/0009",
         "/world/path/planned",
         "/world/candidates/all",
         "/world/candidates/chosen",
@@ -142,9 +142,9 @@ def test_the_ceiling_is_apart_so_that_one_sees_into_the_room(recording: Path) ->
 
 
 def test_without_a_ceiling_the_cloud_is_whole(tmp_path: Path) -> None:
-    events = story()[:6]
-    structured = events[5]
-    events[5] = replace(structured, structure=replace(structured.structure, ceiling_height=None))  # type: ignore[call-arg]
+    events = story()[:7]
+    structured = events[6]
+    events[6] = replace(structured, structure=replace(structured.structure, ceiling_height=None))  # type: ignore[call-arg]
     path = record(tmp_path / "open air.rrd", events)
     assert points(path, "/world/scans/001/points")[-1][:, 2].max() == pytest.approx(2.7, abs=0.002)
 

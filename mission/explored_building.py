@@ -1,0 +1,195 @@
+"""What the robot knows of a building: completed rooms, the doors between them, and where each room lies.
+
+Every room has a frame of its own: the world as the robot believed it when it came in. Links (a door seen from both
+sides, a scan from the doorway, what two rooms' scans saw in common) tie the frames together in a pose graph; the first
+room's frame is the map's.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mission.door_faces import DoorFace
+from mission.exits import Exit
+from mission.explored_room import ExploredRoom
+from mission.grid import OccupancyGrid
+from mission.linking import LinkParameters, common_scan_link, door_link, same_doors, scan_link
+from mission.plan_polygon import within_polygon
+from mission.pose_graph import Anchor, Link, solve
+from mission.rigid import Pose, inverted, transformed
+from mission.structure import Structure
+
+_SAME_EXIT = 0.5
+"""Exits of two rooms whose middles are nearer than this, beside a wall's thickness, are one doorway [m]."""
+_BEYOND = 0.8
+"""So far behind the wall's plane lies what an exit leads to [m]."""
+
+_FREE = (1.0, 0.5)
+"""Of a room whose place follows from the links alone, 1 sigma [m, rad]."""
+
+
+@dataclass(frozen=True, eq=False)
+class CompletedRoom:
+    """A room whose doors are judged; everything in its own frame."""
+
+    explored: ExploredRoom
+    structure: Structure
+    grid: OccupancyGrid
+    faces: tuple[DoorFace, ...]
+    exits: tuple[Exit, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Doorway:
+    """A door that the robot has driven through."""
+
+    spots: dict[int, NDArray[np.float64]]
+    """(2,) where it turns before the door, by the number of the room on that side, in that room's frame [m]."""
+
+    def leads_on(self, room: int) -> int | None:
+        """The room on the other side; None if the door is none of this room's."""
+        return next((other for other in self.spots if other != room), None) if room in self.spots else None
+
+
+class ExploredBuilding:
+    """Rooms and what links them."""
+
+    def __init__(self, parameters: LinkParameters) -> None:
+        self._parameters = parameters
+        self._anchors: dict[int, Anchor] = {}
+        self.rooms: dict[int, CompletedRoom] = {}
+        """By their numbers."""
+        self.links: list[Link] = []
+        self.doorways: list[Doorway] = []
+        self.world_from_room: dict[int, Pose] = {}
+        """(4, 4) of every room that was entered."""
+        self._given_up: list[Exit] = []
+
+    def enter(
+        self, room: int, place: NDArray[np.float64], *, deviation: float = 0.0, turn_deviation: float = 0.0
+    ) -> None:
+        """Begin a room at a place (3,) in its frame, known to a standard deviation [m] and [rad]."""
+        self._anchors[room] = Anchor(place, deviation, turn_deviation)
+        self.world_from_room[room] = np.eye(4)
+
+    def drop(self, room: int) -> None:
+        """Forget a room that turned out to be none."""
+        self._anchors.pop(room, None)
+        self.world_from_room.pop(room, None)
+        self.links = [link for link in self.links if room not in (link.first, link.second)]
+        self.doorways = [doorway for doorway in self.doorways if room not in doorway.spots]
+
+    def pass_through(self, doorway: Doorway, first: int, second: int, place: NDArray[np.float64]) -> None:
+        """Begin a room at a place (3,) in its frame [m], which the robot reached from another through a doorway.
+
+        Its scans were registered on the way, so both rooms share a frame until links correct it.
+        """
+        self.enter(second, place, deviation=_FREE[0], turn_deviation=_FREE[1])
+        self.doorways.append(doorway)
+        self.links.append(scan_link(first, second, np.eye(4), place, self._parameters))
+        self.world_from_room[second] = self.world_from_room[first].copy()
+
+    def give_up(self, way: Exit) -> None:
+        """Do not try an exit again."""
+        self._given_up.append(way)
+
+    def complete(self, room: CompletedRoom) -> list[Link]:
+        """Add a room, link it to the others by their doors, and find out where all of them lie.
+
+        Returns:
+            The new links.
+        """
+        number = room.explored.number
+        known = {door for link in self.links if link.doors for door in link.doors}
+        others = [face for face in self.faces() if face.door_id not in known]
+        pairs = same_doors(others, room.faces, self.world_from_room, self._parameters)
+        new = [door_link(earlier, face, self._parameters) for earlier, face in pairs]
+        self.rooms[number] = room
+        self.links += new
+        self._solve()
+        driven = {frozenset((link.first, link.second)) for link in self.links if link.doors is None}
+        for link in list(new):
+            if frozenset((link.first, link.second)) not in driven:
+                common = self._common(link.first, link.second)
+                if common is not None:
+                    new.append(common)
+                    self.links.append(common)
+                    self._solve()
+        return new
+
+    def faces(self) -> list[DoorFace]:
+        """All doors of all completed rooms."""
+        return [face for room in self.rooms.values() for face in room.faces]
+
+    def room_at(self, place_in_world: NDArray[np.float64]) -> int | None:
+        """Number of the completed room that a place (3,) of the world lies in."""
+        for number, room in self.rooms.items():
+            here = transformed(place_in_world[None], inverted(self.world_from_room[number]))
+            if within_polygon(here[:, :2], room.structure.polygon)[0]:
+                return number
+        return None
+
+    def unexplored(self, room: int) -> Exit | None:
+        """The next exit to take from a room: its own first, else of the room that is the fewest doors away."""
+        for number in self._by_doors(room):
+            for way in self.rooms[number].exits:
+                if way not in self._given_up and not self._leads_to_known(number, way):
+                    return way
+        return None
+
+    def route(self, start: int, goal: int) -> list[Doorway]:
+        """The doorways to pass from one room to another, the fewest of them."""
+        before: dict[int, Doorway | None] = {start: None}
+        queue = deque([start])
+        while queue and goal not in before:
+            room = queue.popleft()
+            for doorway in self.doorways:
+                beyond = doorway.leads_on(room)
+                if beyond is not None and beyond not in before:
+                    before[beyond] = doorway
+                    queue.append(beyond)
+        way: list[Doorway] = []
+        room = goal
+        while (passed := before[room]) is not None:
+            way.insert(0, passed)
+            (room,) = (other for other in passed.spots if other != room)
+        return way
+
+    def _by_doors(self, start: int) -> list[int]:
+        """Completed rooms that the robot can drive to, the nearest first."""
+        found, queue = [start], deque([start])
+        while queue:
+            room = queue.popleft()
+            for doorway in self.doorways:
+                beyond = doorway.leads_on(room)
+                if beyond is not None and beyond not in found:
+                    found.append(beyond)
+                    queue.append(beyond)
+        return [room for room in found if room in self.rooms]
+
+    def _leads_to_known(self, room: int, way: Exit) -> bool:
+        """Whether an exit is a doorway that was passed, or what lies behind it is a room that is done."""
+        for doorway in self.doorways:
+            if room in doorway.spots:
+                along = doorway.spots[room] - way.middle
+                across = along - (along @ way.out) * way.out
+                if float(np.hypot(*across)) < _SAME_EXIT and -4.0 < float(along @ way.out) < 0.0:
+                    return True
+        floor = self.rooms[room].structure.floor_height
+        beyond = np.array([*way.at(_BEYOND), floor + 1.0])
+        return self.room_at(transformed(beyond[None], self.world_from_room[room])[0]) is not None
+
+    def _solve(self) -> None:
+        self.world_from_room |= solve(self._anchors, self.links)
+
+    def _common(self, first: int, second: int) -> Link | None:
+        """What the scans of the second room say of the first, where both saw the same through an opening."""
+        guess = inverted(self.world_from_room[first]) @ self.world_from_room[second]
+        room = self.rooms[second].explored
+        return common_scan_link(
+            (first, self.rooms[first].explored.registrar), (second, room.samples), guess, self._parameters
+        )

@@ -1,0 +1,237 @@
+"""The work in one room, stage by stage: scan, photograph, register, understand, plan, drive. Each stage is an event."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mission.colouring import colour_scan
+from mission.config import MissionConfig
+from mission.driving import drive
+from mission.events import (
+    Coloured,
+    Drove,
+    Event,
+    Labelled,
+    Photographed,
+    Planned,
+    Registered,
+    Remarked,
+    Scanned,
+    Structured,
+)
+from mission.explored_room import ExploredRoom
+from mission.joints import opening
+from mission.localisation import localise
+from mission.mopad import Mopad
+from mission.registration import Registration
+from mission.rigid import Pose, inverted
+from mission.samples import ScanSample, place, sample_scan
+from mission.stopwatch import Stopwatch
+from mission.structure import Structure
+from mission.voxels import VoxelModel
+from sim.scanner import Scan
+from sim.scene import Scene
+
+MAX_DETOURS = 3
+"""So many ways in a row may end before their goal; then the room is done with what is there."""
+
+NO_ARRIVAL = "ways end early"
+"""Reason to stop, beside those of the planner."""
+
+
+class Surveyor:
+    """Does what a room needs with the robot, and tells of it in events.
+
+    The simulator's truth (poses, joints) goes into events only: no stage reads it.
+    """
+
+    def __init__(self, scene: Scene, mopad: Mopad, config: MissionConfig, stopwatch: Stopwatch) -> None:
+        self._scene, self._mopad, self._config, self._stopwatch = scene, mopad, config, stopwatch
+        self._steps = 0
+        self._scans = 0
+        self.room = 1
+        """Number of the room that events belong to."""
+
+    def event(self, kind: type[Any], **content: Any) -> Any:
+        """The next event, of now and here."""
+        event = kind(step=self._steps, time=self._mopad.time, room=self.room, **content)
+        self._steps += 1
+        return event
+
+    def remark(self, text: str) -> Remarked:
+        """Something that a person should know."""
+        remarked: Remarked = self.event(Remarked, level="warning", text=text)
+        return remarked
+
+    def survey(self, room: ExploredRoom) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
+        """Scan a room from place to place until there is no more to gain.
+
+        Raises:
+            MissionError: There is no room.
+        """
+        while True:
+            yield from self._scan_here(room)
+            structure, voxels = yield from self._understand(room)
+            arrived = yield from self._move_on(room, structure, voxels)
+            if not arrived:
+                return structure, voxels
+
+    def scan_threshold(self, room: ExploredRoom, into: ExploredRoom) -> Generator[Event, None, bool]:
+        """Scan from the doorway between two rooms; the scan is registered in the one that the robot comes from.
+
+        Without photographs: all that the scan does is to tie the rooms together.
+
+        Returns:
+            Whether the scan found its place.
+        """
+        scan = yield from self._scan()
+        sample, found = yield from self._register(room, scan)
+        if found.accepted:
+            into.threshold = place(sample, found.world_from_scanner)
+            into.registrar.register(sample, found.world_from_scanner)
+            self._look_around(into)
+        return found.accepted
+
+    def drive(self, room: ExploredRoom, path: NDArray[np.float64], floor_height: float) -> Generator[Event, None, bool]:
+        """Drive along a path (P, 2) as far as it goes, matching the Hokuyos with the room on the way.
+
+        Returns:
+            Whether the robot arrived.
+        """
+        with self._stopwatch("drive"):
+            drove = self._drove(room, path, floor_height)
+        yield drove
+        return bool(drove.arrived)
+
+    def _scan_here(self, room: ExploredRoom) -> Iterator[Event]:
+        """Scan, photograph, register and colour at the present pose."""
+        scan = yield from self._scan()
+        with self._stopwatch("photograph"):
+            photos = self._mopad.photograph()
+        yield self.event(Photographed, scan_number=self._scans, photos=photos)
+        sample, found = yield from self._register(room, scan)
+        if not found.accepted:
+            return
+        self._look_around(room)
+        room.samples.append(place(sample, found.world_from_scanner))
+        with self._stopwatch("colour"):
+            room.views.append(colour_scan(scan, photos, found.world_from_scanner))
+        yield self.event(Coloured, scan_number=self._scans, view=room.views[-1])
+
+    def _scan(self) -> Generator[Event, None, Scan]:
+        self._scans += 1
+        with self._stopwatch("scan"):
+            scan = self._mopad.scan()
+        truth = self._mopad.true_world_from_scanner
+        yield self.event(Scanned, scan_number=self._scans, scan=scan, true_world_from_scanner=truth)
+        return scan
+
+    def _register(self, room: ExploredRoom, scan: Scan) -> Generator[Event, None, tuple[ScanSample, Registration]]:
+        """Find where in a room a scan was taken, and believe it."""
+        mopad = self._mopad
+        guess = mopad.world_from_base @ mopad.robot.base_from_scanner
+        with self._stopwatch("register"):
+            sample = sample_scan(scan, self._config.samples)
+            found = room.registrar.register(sample, guess)
+        yield self.event(
+            Registered,
+            scan_number=self._scans,
+            guess_world_from_scanner=guess,
+            world_from_scanner=found.world_from_scanner,
+            fitness=found.fitness,
+            rmse=found.rmse,
+            accepted=found.accepted,
+            reason=found.reason,
+            true_world_from_scanner=mopad.true_world_from_scanner,
+        )
+        if found.accepted:
+            mopad.believe(found.world_from_scanner @ inverted(mopad.robot.base_from_scanner))
+        else:
+            room.rejected_in_world.append(guess[:3, 3])
+            yield self.remark(f"scan {self._scans} is left out: {found.reason}")
+        return sample, found
+
+    def _understand(self, room: ExploredRoom) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
+        """Floor, ceiling, walls and voxels of the room as far as it is scanned."""
+        with self._stopwatch("structure"):
+            structure = room.structure()
+        yield self.event(Structured, scan_number=self._scans, structure=structure)
+        with self._stopwatch("voxels"):
+            voxels = room.voxels(structure)
+        yield self.event(Labelled, scan_number=self._scans, voxels=voxels)
+        return structure, voxels
+
+    def _move_on(self, room: ExploredRoom, structure: Structure, voxels: VoxelModel) -> Generator[Event, None, bool]:
+        """Choose the next best scan and drive there; a way that ends early leads to a new plan.
+
+        Returns:
+            Whether the robot stands where it is to scan next; if not, the room is complete.
+        """
+        mopad = self._mopad
+        for _ in range(MAX_DETOURS):
+            with self._stopwatch("plan"):
+                grid = room.grid(structure.floor_height)
+                plan = room.plan(
+                    structure,
+                    voxels,
+                    grid,
+                    world_from_base=mopad.world_from_base,
+                    base_from_scanner=mopad.robot.base_from_scanner,
+                )
+            yield self.event(Planned, scan_number=self._scans, plan=plan, grid=grid)
+            if plan.path is None:
+                return False
+            if (yield from self.drive(room, plan.path, structure.floor_height)):
+                return True
+        stopped = replace(plan, chosen=None, path=None, stop_reason=NO_ARRIVAL)
+        yield self.event(Planned, scan_number=self._scans, plan=stopped, grid=grid)
+        return False
+
+    def _drove(self, room: ExploredRoom, path: NDArray[np.float64], floor_height: float) -> Drove:
+        mopad, navigation = self._mopad, self._config.navigation
+        truth: list[Pose] = []
+        angles: list[list[float]] = []
+
+        def watch() -> None:
+            truth.append(mopad.robot.true_world_from_base)
+            angles.append([opening(door) for door in self._scene.true_doors()])
+
+        laser_map = room.laser_map(floor_height + mopad.robot.base_from_lasers[0][2, 3])
+        leg = drive(
+            mopad.robot,
+            path,
+            mopad.measure_lasers,
+            world_from_odometry=mopad.world_from_odometry,
+            footprint=room.footprint,
+            parameters=navigation.driving,
+            localise=partial(localise, laser_map, parameters=navigation.localisation),
+            watch=watch,
+        )
+        mopad.believe(leg.world_from_base[-1])
+        if not leg.arrived:  # what stopped it must be on the map; after an arrival the next scan tells more
+            room.lasers += zip(leg.laser_scans, leg.world_from_base_at_laser, strict=True)
+            self._look_around(room)
+        drove: Drove = self.event(
+            Drove,
+            planned_path=path,
+            times=leg.times,
+            world_from_base=leg.world_from_base,
+            laser_scans=leg.laser_scans,
+            outcome=leg.outcome,
+            reason=leg.reason,
+            true_world_from_base=np.array(truth),
+            true_door_angles=np.array(angles),
+        )
+        return drove
+
+    def _look_around(self, room: ExploredRoom) -> None:
+        """Note where the robot stands and what the Hokuyos see there."""
+        world_from_base = self._mopad.world_from_base
+        room.robot_poses.append(world_from_base)
+        room.lasers += [(scan, world_from_base) for scan in self._mopad.measure_lasers()]
