@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from detector.orthoimage import column_medians
 from detector.result import Door, WallResult
 from detector.room import Wall
 
@@ -29,7 +30,8 @@ class DoorFace:
     wall: Wall
     door: Door
     recess: float
-    """Depth of the leaf behind the wall's plane at its hinge [m]; NaN where it stands open or was not seen."""
+    """Depth of the leaf behind the wall's plane in the middle of the doorway [m]; NaN where it stands open or was not
+    seen. The other face sees the same place of the leaf, whichever its hinge."""
 
     @property
     def head(self) -> NDArray[np.float64]:
@@ -63,23 +65,19 @@ def _letters(number: int) -> str:
 
 
 def _recess(result: WallResult, door: Door) -> float:
-    """Depth of a closed leaf behind the wall's plane, from the line that its columns make in the orthoimage."""
+    """Depth of a leaf behind the wall's plane in the middle of the doorway, from its columns in the orthoimage."""
     if not door.leaves or not all(leaf.opening_angle < CLOSED for leaf in door.leaves):  # NaN compares false
         return float("nan")
     r, depth, size = door.rectangle, result.merged.depth, result.merged.pixel_size
     columns = np.arange(depth.shape[1]) * size + size / 2
     heights = result.wall.height - (np.arange(depth.shape[0]) * size + size / 2)
     across = (columns > r.left + _INSET * r.width) & (columns < r.right - _INSET * r.width)
+    middle = (r.left + r.right) / 2
     up = (heights > r.bottom + _INSET * r.height) & (heights < r.top - _INSET * r.height)
-    leaf = depth[np.ix_(up, across)].astype(float)
+    leaf = depth[np.ix_(up, across)]
     leaf[np.abs(leaf) > _DEEPEST] = np.nan
     seen = np.count_nonzero(np.isfinite(leaf), axis=0) >= 10
     if np.count_nonzero(seen) < 10:
         return float("nan")
-    at, behind = columns[across][seen], -np.nanmedian(leaf[:, seen], axis=0)
-    hinges = {leaf.hinge for leaf in door.leaves}
-    if len(door.leaves) > 1 or hinges == {"none"}:
-        return float(np.median(behind))
-    hinge = r.left if hinges == {"left"} else r.right
-    slope, offset = np.polyfit(at - hinge, behind, 1)
-    return float(offset)
+    at, behind = columns[across][seen], -column_medians(leaf[:, seen])
+    return float(np.polyval(np.polyfit(at - middle, behind, 1), 0.0))

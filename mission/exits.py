@@ -84,7 +84,7 @@ def find_exits(
         inside &= (in_wall[:, 0] > low - 1.0) & (in_wall[:, 0] < high + 1.0)
         along, room = _widest(in_wall[inside, 0], low, high)
         width = 2 * room
-        if width < needed:
+        if width < needed - _STEP:
             refused.append((face, f"something leaves {width:.2f} m of it, {needed:.2f} m needed"))
             continue
         middle = face.wall.world_from_wall(np.array([[along, 0.0, 0.0]]))[0, :2]
