@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import assets
+from mission.bench.scenes.building import BUILDING
 from mission.bench.scenes.flat import FLAT
 from mission.bench.scenes.writing import written
 
-HOUSES = (FLAT,)
+HOUSES = (FLAT, BUILDING)
 
 
 def main() -> None:
