@@ -82,7 +82,10 @@ OFFICE = Room(  # an L with an oblique corner, a niche and a step
         ),
         3: Side(hung=(Hung(2.0, 1.5, Sheet(1.4, 0.9, palette.white_furniture, 0.02, rim=BLACK)),)),
         8: Side(windows=_window(0.25, 1.1), hung=(_radiator(0.25, 1.1),)),
-        11: Side(stood=(Stood(1.6, 0.03, Table(1.4, 0.7, 0.74, palette.beech, 23)),), hung=(_picture(1.6, 0.6, 0.45, palette.picture_cold, z=1.7),)),
+        11: Side(
+            stood=(Stood(1.6, 0.03, Table(1.4, 0.7, 0.74, palette.beech, 23)),),
+            hung=(_picture(1.6, 0.6, 0.45, palette.picture_cold, z=1.7),),
+        ),
         13: Side(windows=_window(1.2, 1.6), hung=(_radiator(1.2, 1.6),)),
     },
     standing=(
@@ -107,14 +110,20 @@ LOUNGE = Room(  # oblique wall, chimney breast, pillar
             stood=(Stood(2.9, 0.03, Sofa(2.2, palette.red_fabric)),),
             hung=(_picture(2.9, 1.3, 0.8, palette.picture_dark),),
         ),
-        3: Side(stood=(Stood(1.5, 0.03, Shelf(1.4, 0.9, 0.36, palette.cherry, 31)),), hung=(_picture(1.5, 0.8, 0.6, palette.picture_warm),)),
+        3: Side(
+            stood=(Stood(1.5, 0.03, Shelf(1.4, 0.9, 0.36, palette.cherry, 31)),),
+            hung=(_picture(1.5, 0.8, 0.6, palette.picture_warm),),
+        ),
         4: Side(windows=_window(1.2, 1.8), hung=(_radiator(1.2, 1.8),)),
         5: Side(paint=palette.paint_mint, windows=_window(1.2, 1.6), hung=(_radiator(1.2, 1.6),)),
         8: Side(paint=palette.brickwork),
         10: Side(stood=(Stood(1.35, 0.03, Television(1.6, palette.anthracite)),)),
         11: Side(hung=(_picture(2.2, 0.9, 0.6, palette.picture_cold), Hung(6.75, 1.1, Socket()))),
     },
-    standing=(Standing((21.2, 9.0), 0.0, Low(1.1, 0.6, 0.42, palette.oak)), Standing((26.0, 8.6), -60.0, Plant(1.6, 0.32, 32))),
+    standing=(
+        Standing((21.2, 9.0), 0.0, Low(1.1, 0.6, 0.42, palette.oak)),
+        Standing((26.0, 8.6), -60.0, Plant(1.6, 0.32, 32)),
+    ),
 )  # fmt: skip
 
 LIBRARY = Room(  # an L with an oblique corner, a chimney breast and a beam
@@ -138,9 +147,15 @@ LIBRARY = Room(  # an L with an oblique corner, a chimney breast and a beam
             stood=(Stood(2.2, 0.03, Shelf(1.6, 2.0, 0.36, palette.beech, 42)),),
             hung=(_picture(7.6, 1.1, 0.8, palette.picture_cold), Hung(4.6, 1.1, Socket())),
         ),
-        8: Side(stood=(Stood(1.7, 0.03, Sofa(1.9, palette.sand_fabric)),), hung=(_picture(1.7, 0.9, 0.6, palette.picture_warm),)),
+        8: Side(
+            stood=(Stood(1.7, 0.03, Sofa(1.9, palette.sand_fabric)),),
+            hung=(_picture(1.7, 0.9, 0.6, palette.picture_warm),),
+        ),
         10: Side(
-            stood=(Stood(1.6, 0.03, Shelf(1.8, 1.9, 0.36, palette.beech, 43)), Stood(4.3, 0.03, Table(1.5, 0.75, 0.74, palette.walnut, 44))),
+            stood=(
+                Stood(1.6, 0.03, Shelf(1.8, 1.9, 0.36, palette.beech, 43)),
+                Stood(4.3, 0.03, Table(1.5, 0.75, 0.74, palette.walnut, 44)),
+            ),
             hung=(_picture(4.3, 0.7, 0.5, palette.picture_dark, z=1.7),),
         ),
         11: Side(windows=_window(1.6, 1.8), hung=(_radiator(1.6, 1.8),)),
@@ -168,7 +183,10 @@ DINING = Room(  # an L with an oblique corner, a niche and a pillar
         ),
         4: Side(windows=_window(0.7, 1.4), hung=(_radiator(0.7, 1.4),)),
         7: Side(windows=_window(0.3, 1.2), hung=(_radiator(0.3, 1.2),)),
-        9: Side(hung=(_picture(1.5, 1.0, 0.7, palette.picture_cold),), stood=(Stood(1.5, 0.03, Shelf(1.4, 0.9, 0.36, palette.beech, 51)),)),
+        9: Side(
+            hung=(_picture(1.5, 1.0, 0.7, palette.picture_cold),),
+            stood=(Stood(1.5, 0.03, Shelf(1.4, 0.9, 0.36, palette.beech, 51)),),
+        ),
         10: Side(
             paint=palette.paint_sky,
             stood=(Stood(2.6, 0.03, Sofa(2.0, palette.blue_fabric)),),
@@ -245,10 +263,10 @@ DOORS = (
 
 BUILDING = House(
     "building",
-    "Five inhabited rooms on 27 x 21 m with 66 wall faces and five doors, like the simulated scene of the paper (Figure "
-    "13). The outer door stands open 35 deg, those to office and lounge 3 and 54 deg, those to dining room and library "
-    "are closed: nobody gets from room to room without help, so the sites say where the robot is set down. To turn or "
-    'move all of it, change pos and euler of the body "building".',
+    "Five inhabited rooms on 27 x 21 m with 66 wall faces and five doors, like the simulated scene of the paper "
+    "(Figure 13). The outer door stands open 35 deg, those to office and lounge 3 and 54 deg, those to dining room and "
+    "library are closed: nobody gets from room to room without help, so the sites say where the robot is set down. To "
+    'turn or move all of it, change pos and euler of the body "building".',
     rooms=(FOYER, OFFICE, LOUNGE, LIBRARY, DINING),
     doors=DOORS,
     starts=(

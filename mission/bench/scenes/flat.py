@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from mission.bench.scenes import palette
-from mission.bench.scenes.furniture import Bed, DiningTable, Hedge, Kitchen, Low, Television, Wardrobe
+from mission.bench.scenes.furniture import Bed, DiningTable, Hedge, Kitchen, Low, Wardrobe
 from mission.bench.scenes.plans import Doorway, House, Lowered, Room, Side, Standing, Start
 from mission.bench.walls.finishes import BLACK, WHITE
 from mission.bench.walls.fixtures import Clock, Radiator, Sheet, Socket

@@ -101,7 +101,9 @@ def _parser() -> ElementTree.XMLParser:
 def _add_ground(pen: Pen, building: Node, house: House) -> None:
     corners = np.concatenate([room.polygon for room in house.rooms])
     low, high = corners.min(axis=0) - house.outer, corners.max(axis=0) + house.outer
-    building.comment("What everything stands on, and the lawn around; the rooms' own floors lie half a millimetre higher")
+    building.comment(
+        "What everything stands on, and the lawn around; the rooms' own floors lie half a millimetre higher"
+    )
     pen.box(building, (*low, -0.2), (*high, -0.0005), pen_floor())
     pen.box(building, (*(low - 12), -0.4), (*(high + 12), -0.2), _LAWN)
 
@@ -241,4 +243,3 @@ def _add_materials(pen: Pen, asset: ElementTree.Element) -> None:
 def _area(corners: NDArray[np.float64]) -> float:
     x, y = corners.T
     return float(np.sum(np.roll(x, -1) * y - x * np.roll(y, -1))) / 2
-
