@@ -15,17 +15,14 @@ from mission.plan_lines import Columns, LineParameters, PlanLine, columns_of, fi
 from mission.plan_polygon import OPEN, Loop, Segment, covered_share, crossed, room_loops
 from mission.roof import Roof
 from mission.visibility import Visibility
+from mission.wall_layers import on_one_line, set_back
 from sim.parameters import Parameters
 
 Floats = NDArray[np.float64]
 
-
 _NEAR = 0.02
 """A wall that ends this near to a corner ends there [m]."""
 
-
-_PROUD = (0.04, 0.2)
-"""What stands out from a wall by this much may be a part of it or stand before it [m]."""
 _BEFORE = 0.3
 """Overhead is looked this far before a wall: clear of the lintels in it [m]."""
 
@@ -113,7 +110,7 @@ class WallFinder:
         top = ceiling if ceiling is not None else _common_top(surfaces, self.floor + self.parameters.min_top)
         ends = [top if ceiling is not None else self._own_top(columns, top) for columns in surfaces]
         reaching = [self._reaching(line, s, t) for line, s, t in zip(self.lines, surfaces, ends, strict=True)]
-        reaching = self._set_back(reaching)
+        reaching = set_back(self.lines, on_one_line(self.lines, reaching, self.parameters.lines), self.parameters.lines)
         seen = self._seen_first(reaching, self._segments(reaching, top))
         segments = self._segments(seen, top)
         if not segments:
@@ -154,19 +151,6 @@ class WallFinder:
         for run in np.split(np.flatnonzero(lintel), np.flatnonzero(np.diff(between_walls)) + 1):
             lintel[run] = len(run) == 0 or np.ptp(columns.numbers[run]) < widest
         return columns.chosen(~hanging | lintel)
-
-    def _set_back(self, surfaces: Sequence[Columns]) -> list[Columns]:
-        """Without what stands little before a wall of which more is seen: pilasters, curtains, pipes."""
-        kept = []
-        for line, columns in zip(self.lines, surfaces, strict=True):
-            spots = line.at((columns.numbers + 0.5) * self.parameters.lines.column)
-            for other, behind in zip(self.lines, surfaces, strict=True):
-                depth = other.depth(spots)
-                before = (depth > _PROUD[0]) & (depth < _PROUD[1]) & (line.normal @ other.normal > 0.99)
-                if before.any() and _is_part_of(columns.chosen(before), other.along(spots[before]), behind):
-                    columns, spots = columns.chosen(~before), spots[~before]
-            kept.append(columns)
-        return kept
 
     def _free_below(self, line: PlanLine, columns: Columns) -> NDArray[np.bool_]:
         """Columns (K,) that end well above the floor, and some scan looked through under them."""
@@ -249,23 +233,21 @@ class WallFinder:
         return length >= least and covered_share(self.lines[number], a, b, pieces) * length > 0.5 * least
 
     def _rectangle(self, line: PlanLine, a: Floats, b: Floats, top: float) -> WallRectangle:
-        """The wall from a to b, the room on the left: seen from inside b is its left end."""
+        """The wall from a to b, the room on the left: seen from inside b is its left end.
+
+        Under a roof that is lower than the top from end to end it ends there.
+        """
+        length = float(np.hypot(*(b - a)))
+        under = self.roof.height_over(np.linspace(a, b, 2 + int(length / 0.1)) + _BEFORE * line.normal).max()
+        if under < top - self.parameters.lines.top_band:
+            top = float(under)
         return WallRectangle(
             origin=np.array([b[0], b[1], self.floor]),
             u=np.array([-line.tangent[0], -line.tangent[1], 0.0]),
             v=np.array([0.0, 0.0, 1.0]),
-            width=float(np.hypot(*(b - a))),
+            width=length,
             height=float(top - self.floor),
         )
-
-
-def _is_part_of(columns: Columns, along: NDArray[np.floating], wall: Columns) -> bool:
-    """Whether columns, at coordinates (K,) along a wall little behind them, stand before it: more of the wall shows
-    between them, or it goes on beyond both ends. A wall that only begins where they end is a step in the plan."""
-    between = np.count_nonzero((wall.lows > along.min()) & (wall.highs < along.max()))
-    beyond = np.count_nonzero(wall.highs < along.min()), np.count_nonzero(wall.lows > along.max())
-    own = len(columns.numbers)
-    return bool(between > own or (min(beyond) >= 3 and sum(beyond) > own))
 
 
 def _upright(line: PlanLine, places: Floats) -> Floats:

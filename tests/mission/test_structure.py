@@ -84,6 +84,7 @@ def test_a_wall_under_a_lowered_ceiling_is_a_wall_and_the_step_overhead_is_none(
 
     assert corners(structure) == RECTANGLE
     assert structure.ceiling_height == pytest.approx(2.6, abs=0.001)
+    assert sorted(round(wall.height, 2) for wall in structure.walls) == [2.2, 2.6, 2.6, 2.6]
 
 
 def test_a_turned_and_shifted_room_gets_its_four_walls_to_a_millimetre_and_a_twentieth_of_a_degree() -> None:
@@ -127,6 +128,18 @@ def test_cabinet_and_table_are_no_walls() -> None:
 def test_neither_an_open_leaf_nor_the_corridor_beyond_it_is_a_wall(swing_deg: float) -> None:
     a = np.deg2rad(swing_deg)
     leaf = Box((2 + 0.45 * np.cos(a), 0.45 * np.sin(a), 1.03), (0.9, 0.04, 2.04), a)
+    room = [*with_doorway(plain_room(), 1, 2.0, 2.9, 2.1), *CORRIDOR, leaf]
+    structure = find_structure(scanned(room, (3.2, 2.2), (4.5, 1.6)))
+
+    assert corners(structure) == RECTANGLE
+    assert len(structure.walls) == 4
+
+
+def test_the_line_of_a_leaf_ajar_takes_nothing_of_the_wall_that_it_meets_beside_the_door() -> None:
+    # The leaf stands 3 deg open to the corridor, its face 14 cm behind the wall's at the hinge, x = 2.9: the two planes
+    # meet at 2.9 + 0.14 / tan(3 deg) = 5.6, and are within 3 cm of each other from there to the corner.
+    a = np.deg2rad(3)
+    leaf = Box((2.9 - 0.45 * np.cos(a), -0.16 - 0.45 * np.sin(a), 1.03), (0.9, 0.04, 2.04), a)
     room = [*with_doorway(plain_room(), 1, 2.0, 2.9, 2.1), *CORRIDOR, leaf]
     structure = find_structure(scanned(room, (3.2, 2.2), (4.5, 1.6)))
 

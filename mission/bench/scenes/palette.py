@@ -1,0 +1,57 @@
+"""Colours and textures of the buildings that ship."""
+
+from __future__ import annotations
+
+from mission.bench.scenes.finishes import grained, named, speckled, tiled
+
+PLASTER = speckled("plaster", (0.87, 0.85, 0.80), (0.84, 0.82, 0.77), 0.3, (2.0, 2.0))
+ROUGHCAST = speckled("roughcast", (0.78, 0.80, 0.80), (0.72, 0.74, 0.75), 0.4, (2.0, 2.0))
+SAND_PLASTER = speckled("sand_plaster", (0.84, 0.76, 0.64), (0.80, 0.72, 0.60), 0.3, (2.0, 2.0))
+BRICK = tiled("brick", (0.62, 0.38, 0.30), (0.58, 0.34, 0.27), (0.70, 0.66, 0.60), 0.5)
+WALL_TILES = tiled("wall_tiles", (0.86, 0.90, 0.90), (0.83, 0.88, 0.89), (0.62, 0.64, 0.64), 0.4)
+OAK = grained("oak", (0.60, 0.43, 0.27), (0.55, 0.385, 0.235))
+WALNUT = grained("walnut", (0.40, 0.27, 0.18), (0.35, 0.23, 0.15))
+BOARDS = tiled("boards", (0.62, 0.48, 0.34), (0.58, 0.44, 0.31), (0.45, 0.34, 0.24), 0.6)
+STONE = tiled("stone", (0.60, 0.57, 0.53), (0.56, 0.53, 0.49), (0.42, 0.40, 0.38), 1.2)
+CARPET = speckled("carpet", (0.42, 0.44, 0.48), (0.36, 0.38, 0.42), 0.5, (2.0, 2.0))
+
+paint_plaster = named("paint_plaster", (0.87, 0.85, 0.80), texture=PLASTER)
+paint_roughcast = named("paint_roughcast", (0.78, 0.80, 0.80), texture=ROUGHCAST)
+paint_sand = named("paint_sand", (0.84, 0.76, 0.64), texture=SAND_PLASTER)
+paint_ivory = named("paint_ivory", (0.88, 0.86, 0.79), gloss=0.15)
+paint_mint = named("paint_mint", (0.76, 0.83, 0.77), gloss=0.1)
+paint_sky = named("paint_sky", (0.74, 0.80, 0.85), gloss=0.1)
+paint_rose = named("paint_rose", (0.85, 0.77, 0.74))
+paint_grey = named("paint_grey", (0.75, 0.75, 0.76), gloss=0.25)
+paint_white = named("paint_white", (0.91, 0.91, 0.90))
+brickwork = named("brickwork", (1, 1, 1), texture=BRICK)
+wall_tiles = named("wall_tiles", (1, 1, 1), texture=WALL_TILES, gloss=0.4)
+
+oak = named("oak", (1, 1, 1), texture=OAK, gloss=0.3)
+walnut = named("walnut", (1, 1, 1), texture=WALNUT, gloss=0.3)
+door_white = named("door_white", (0.94, 0.94, 0.93), gloss=0.3)
+door_blue = named("door_blue", (0.22, 0.34, 0.50), gloss=0.4)
+door_green = named("door_green", (0.27, 0.42, 0.34), gloss=0.3)
+door_grey = named("door_grey", (0.52, 0.55, 0.58), gloss=0.4)
+door_red = named("door_red", (0.55, 0.20, 0.18), gloss=0.5)
+door_cream = named("door_cream", (0.82, 0.78, 0.66), gloss=0.2)
+frame_white = named("frame_white", (0.93, 0.93, 0.92), gloss=0.2)
+frame_dark = named("frame_dark", (0.30, 0.31, 0.33), gloss=0.2)
+frame_oak = named("frame_oak", (0.58, 0.42, 0.27), gloss=0.2)
+
+boards = named("boards", (1, 1, 1), texture=BOARDS, gloss=0.2)
+stone = named("stone", (1, 1, 1), texture=STONE, gloss=0.2)
+carpet = named("carpet", (1, 1, 1), texture=CARPET)
+
+beech = named("beech", (0.74, 0.60, 0.42), gloss=0.1)
+cherry = named("cherry", (0.56, 0.33, 0.22), gloss=0.2)
+anthracite = named("anthracite", (0.22, 0.23, 0.25), gloss=0.1)
+white_furniture = named("white_furniture", (0.90, 0.90, 0.89), gloss=0.2)
+blue_fabric = named("blue_fabric", (0.30, 0.36, 0.46))
+red_fabric = named("red_fabric", (0.55, 0.22, 0.20))
+green_fabric = named("green_fabric", (0.28, 0.40, 0.32))
+sand_fabric = named("sand_fabric", (0.66, 0.60, 0.50))
+picture_warm = named("picture_warm", (0.80, 0.52, 0.30))
+picture_cold = named("picture_cold", (0.32, 0.45, 0.60))
+picture_dark = named("picture_dark", (0.25, 0.24, 0.26))
+hedge = named("hedge", (0.24, 0.38, 0.20))
