@@ -33,20 +33,36 @@ class ExitParameters(Parameters):
 
 
 @dataclass(frozen=True, eq=False)
-class Exit:
-    """A way out of a room, straight through a doorway, in the room's frame."""
+class CentreLine:
+    """The line on which the robot passes a doorway, in a room's frame."""
 
-    face: DoorFace
     middle: NDArray[np.float64]
-    """(2,) where the robot's centre line meets the wall's plane [m]."""
+    """(2,) where it meets the wall's plane [m]."""
     out: NDArray[np.float64]
     """(2,) unit, out of the room."""
-    width: float
-    """Of the gap, as the points have it [m]."""
 
     def at(self, behind: float) -> NDArray[np.float64]:
-        """(2,) the place on the centre line so far behind the wall's plane; negative before it [m]."""
+        """(2,) the place so far behind the wall's plane; negative before it [m]."""
         return self.middle + behind * self.out
+
+    def reversed(self) -> CentreLine:
+        """The same line as a way into the room."""
+        return CentreLine(self.middle, -self.out)
+
+    def aside(self, place: NDArray[np.float64]) -> float:
+        """Distance of a place (2,) from the line [m]."""
+        x, y = place - self.middle
+        return float(abs(x * self.out[1] - y * self.out[0]))
+
+
+@dataclass(frozen=True, eq=False)
+class Exit:
+    """A way out of a room, straight through a doorway."""
+
+    face: DoorFace
+    line: CentreLine
+    width: float
+    """Of the gap, as the points have it [m]."""
 
 
 def find_exits(
@@ -88,7 +104,7 @@ def find_exits(
             refused.append((face, f"something leaves {width:.2f} m of it, {needed:.2f} m needed"))
             continue
         middle = face.wall.world_from_wall(np.array([[along, 0.0, 0.0]]))[0, :2]
-        exits.append(Exit(face, middle, -face.normal[:2], width))
+        exits.append(Exit(face, CentreLine(middle, -face.normal[:2]), width))
     return exits, refused
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mission.door_faces import DoorFace
-from mission.exits import Exit
+from mission.exits import CentreLine, Exit
 from mission.explored_room import ExploredRoom
 from mission.grid import OccupancyGrid
 from mission.linking import LinkParameters, common_scan_link, door_link, same_doors, scan_link
@@ -47,12 +47,14 @@ class CompletedRoom:
 class Doorway:
     """A door that the robot has driven through."""
 
-    spots: dict[int, NDArray[np.float64]]
-    """(2,) where it turns before the door, by the number of the room on that side, in that room's frame [m]."""
+    door: str
+    """Its face in the room that the robot came from."""
+    lines: dict[int, CentreLine]
+    """On which it passes, out of each of both rooms, by the room's number and in its frame."""
 
     def leads_on(self, room: int) -> int | None:
         """The room on the other side; None if the door is none of this room's."""
-        return next((other for other in self.spots if other != room), None) if room in self.spots else None
+        return next((other for other in self.lines if other != room), None) if room in self.lines else None
 
 
 class ExploredBuilding:
@@ -81,7 +83,7 @@ class ExploredBuilding:
         self._anchors.pop(room, None)
         self.world_from_room.pop(room, None)
         self.links = [link for link in self.links if room not in (link.first, link.second)]
-        self.doorways = [doorway for doorway in self.doorways if room not in doorway.spots]
+        self.doorways = [doorway for doorway in self.doorways if room not in doorway.lines]
 
     def pass_through(self, doorway: Doorway, first: int, second: int, place: NDArray[np.float64]) -> None:
         """Begin a room at a place (3,) in its frame [m], which the robot reached from another through a doorway.
@@ -156,7 +158,7 @@ class ExploredBuilding:
         room = goal
         while (passed := before[room]) is not None:
             way.insert(0, passed)
-            (room,) = (other for other in passed.spots if other != room)
+            (room,) = (other for other in passed.lines if other != room)
         return way
 
     def _by_doors(self, start: int) -> list[int]:
@@ -173,14 +175,15 @@ class ExploredBuilding:
 
     def _leads_to_known(self, room: int, way: Exit) -> bool:
         """Whether an exit is a doorway that was passed, or what lies behind it is a room that is done."""
-        for doorway in self.doorways:
-            if room in doorway.spots:
-                along = doorway.spots[room] - way.middle
-                across = along - (along @ way.out) * way.out
-                if float(np.hypot(*across)) < _SAME_EXIT and -4.0 < float(along @ way.out) < 0.0:
-                    return True
+        passed = [doorway.lines[room] for doorway in self.doorways if room in doorway.lines]
+        if any(
+            line.aside(way.line.middle) < _SAME_EXIT
+            and float(np.hypot(*(line.middle - way.line.middle))) < 2 * _SAME_EXIT
+            for line in passed
+        ):
+            return True
         floor = self.rooms[room].structure.floor_height
-        beyond = np.array([*way.at(_BEYOND), floor + 1.0])
+        beyond = np.array([*way.line.at(_BEYOND), floor + 1.0])
         return self.room_at(transformed(beyond[None], self.world_from_room[room])[0]) is not None
 
     def _solve(self) -> None:

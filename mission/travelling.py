@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mission.events import Event
-from mission.exits import Exit
-from mission.explored_building import CompletedRoom, Doorway, ExploredBuilding
+from mission.exits import CentreLine, Exit
+from mission.explored_building import Doorway, ExploredBuilding
 from mission.explored_room import ExploredRoom
-from mission.grid import Footprint
+from mission.grid import Footprint, OccupancyGrid
 from mission.mopad import Mopad
 from mission.navigation import NavigationParameters, plan_path
 from mission.rigid import inverted, transformed
@@ -53,20 +53,19 @@ class Traveller:
         """
         surveyor, parameters = self._surveyor, self._parameters
         here = yield from self._drive_to_room(here, way.face.room)
-        approach = self._approach(here, way) if here == way.face.room else None
-        if approach is None:
+        path = self._approach(here, way.line) if here == way.face.room else None
+        if path is None:
             yield surveyor.remark(f"door {way.face.door_id} is out of reach")
             return here, False
-        room = self._building.rooms[here]
-        path, spot = approach
-        floor, threshold = room.structure.floor_height, way.at(parameters.exits.threshold)
+        room, spot = self._building.rooms[here], path[-1]
+        floor, threshold = room.structure.floor_height, way.line.at(parameters.exits.threshold)
         failed = f"an obstacle in door {way.face.door_id}"
         if (yield from surveyor.drive(room.explored, np.vstack([path, threshold]), floor)):
             failed = f"no place to turn is in sight behind door {way.face.door_id}"
             tied = yield from surveyor.scan_threshold(room.explored, beyond)
-            landing = self._landing(beyond, way, floor) if tied else None
+            landing = self._landing(beyond.grid(floor), way.line) if tied else None
             if landing is not None and (yield from surveyor.drive(beyond, self._straight_to(landing), floor)):
-                doorway = Doorway({here: spot, beyond.number: landing})
+                doorway = Doorway(way.face.door_id, {here: way.line, beyond.number: way.line.reversed()})
                 self._building.pass_through(doorway, here, beyond.number, self._mopad.world_from_base[:3, 3])
                 surveyor.room = beyond.number
                 return beyond.number, True
@@ -75,16 +74,17 @@ class Traveller:
         return here, False
 
     def come_back(self, beyond: ExploredRoom, way: Exit) -> Generator[Event, None, int]:
-        """Return from a place behind an exit that is no room.
+        """Return straight from a place behind an exit that is no room.
 
         Returns:
             The room that the robot is in.
         """
         room = self._building.rooms[way.face.room]
-        doorway = next(doorway for doorway in self._building.doorways if beyond.number in doorway.spots)
-        path = np.vstack([self._straight_to(doorway.spots[beyond.number]), doorway.spots[way.face.room]])
+        spot = self._landing(room.grid, way.line.reversed())
         self._surveyor.room = way.face.room
-        yield from self._surveyor.drive(room.explored, path, room.structure.floor_height)
+        if spot is not None:
+            path = np.vstack([self._straight_to(way.line.at(self._parameters.exits.threshold)), spot])
+            yield from self._surveyor.drive(room.explored, path, room.structure.floor_height)
         return way.face.room
 
     def _drive_to_room(self, here: int, goal: int) -> Generator[Event, None, int]:
@@ -96,40 +96,42 @@ class Traveller:
         building, mopad = self._building, self._mopad
         for doorway in building.route(here, goal):
             room = building.rooms[here]
-            (there,) = (other for other in doorway.spots if other != here)
+            (there,) = (other for other in doorway.lines if other != here)
+            path = self._approach(here, doorway.lines[here])
+            landing = self._landing(building.rooms[there].grid, doorway.lines[there].reversed())
+            if path is None or landing is None:
+                return here
             here_from_there = inverted(building.world_from_room[here]) @ building.world_from_room[there]
-            landing = transformed(np.array([[*doorway.spots[there], 0.0]]), here_from_there)[:, :2]
-            path = self._path(room, doorway.spots[here])
+            beyond = transformed(np.array([[*landing, 0.0]]), here_from_there)[:, :2]
             floor = room.structure.floor_height
-            if path is None or not (yield from self._surveyor.drive(room.explored, np.vstack([path, landing]), floor)):
+            if not (yield from self._surveyor.drive(room.explored, np.vstack([path, beyond]), floor)):
                 return here
             mopad.believe(inverted(here_from_there) @ mopad.world_from_base)
             here = self._surveyor.room = there
         return here
 
-    def _approach(self, here: int, way: Exit) -> tuple[NDArray[np.float64], Place] | None:
-        """Way (P, 2) to the nearest place before an exit where the robot can turn towards it, and that place."""
-        for distance in self._distances():
-            path = self._path(self._building.rooms[here], way.at(-distance))
-            if path is not None:
-                return path, way.at(-distance)
-        return None
+    def _approach(self, here: int, line: CentreLine) -> NDArray[np.float64] | None:
+        """Way (P, 2) to the nearest place before a doorway where the robot can turn towards it."""
+        grid, pose = self._building.rooms[here].grid, self._mopad.world_from_base
+        places = [line.at(-distance) for distance in self._distances()]
+        free = [place for place in places if grid.clearance_at(place) >= self._turning]
+        paths = (plan_path(grid, pose, p, footprint=self._footprint, parameters=self._parameters) for p in free)
+        return next((path for path in paths if path is not None), None)
 
-    def _landing(self, beyond: ExploredRoom, way: Exit, floor_height: float) -> Place | None:
-        """The nearest place straight behind an exit where the robot can turn, as seen from the doorway."""
-        grid = beyond.grid(floor_height)
-        needed = self._footprint.half_diagonal + self._parameters.margin
-        places = (way.at(distance) for distance in self._distances())
-        return next((place for place in places if grid.clearance_at(place) >= needed), None)
+    def _landing(self, grid: OccupancyGrid, line: CentreLine) -> Place | None:
+        """The nearest place straight behind a doorway where the robot can turn."""
+        places = (line.at(distance) for distance in self._distances())
+        return next((place for place in places if grid.clearance_at(place) >= self._turning), None)
+
+    @property
+    def _turning(self) -> float:
+        """Radius of the disc that the robot needs to turn [m]."""
+        return self._footprint.half_diagonal + self._parameters.margin
 
     def _distances(self) -> NDArray[np.float64]:
         """From a wall's plane to where the robot may turn [m]."""
         exits = self._parameters.exits
         return np.arange(exits.nearest, exits.furthest, 0.05)
-
-    def _path(self, room: CompletedRoom, goal: Place) -> NDArray[np.float64] | None:
-        pose = self._mopad.world_from_base
-        return plan_path(room.grid, pose, goal, footprint=self._footprint, parameters=self._parameters)
 
     def _straight_to(self, goal: Place) -> NDArray[np.float64]:
         """(2, 2) from where the robot stands."""

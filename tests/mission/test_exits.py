@@ -51,9 +51,9 @@ def test_the_robot_drives_through_the_middle_of_what_is_clear() -> None:
     (way,), refused = exits_of(door(1.0, 1.9, leaf(90, "left")))
     assert refused == []
     where = wall(3, -2, YAW)
-    np.testing.assert_allclose(way.middle, where.world_from_wall(np.array([[1.475, 0, 0]]))[0, :2], atol=0.006)
-    np.testing.assert_allclose(way.out, -where.normal[:2])
-    np.testing.assert_allclose(way.at(0.5), where.world_from_wall(np.array([[1.475, 0, -0.5]]))[0, :2], atol=0.006)
+    np.testing.assert_allclose(way.line.middle, where.world_from_wall(np.array([[1.475, 0, 0]]))[0, :2], atol=0.006)
+    np.testing.assert_allclose(way.line.out, -where.normal[:2])
+    np.testing.assert_allclose(way.line.at(0.5), where.world_from_wall(np.array([[1.475, 0, -0.5]]))[0, :2], atol=0.006)
 
 
 @pytest.mark.parametrize(("width", "passable"), [(0.77, True), (0.75, False)])

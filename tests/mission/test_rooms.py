@@ -23,9 +23,9 @@ def box(x: tuple[float, float], y: tuple[float, float], z: tuple[float, float] =
 
 
 def cross_wall(x: float, door: float, width: float, name: str) -> str:
-    """A wall of 0.2 m across the house with a door that is hinged at its far side, its leaf 5 cm behind the east face."""
+    """A wall of 0.2 m across the house; its door is hinged at the far side, the leaf 5 cm behind the east face."""
     leaf = (
-        f'<body name="{name}" pos="{x + 0.15} {door + width} 0"><joint axis="0 0 1" range="-10 120" damping="2"/>'
+        f'<body name="{name}" pos="{x + 0.15} {door + width} 0"><joint axis="0 0 1" range="-10 120"/>'
         f'<geom type="box" pos="-0.02 {-width / 2} 1.025" size="0.02 {width / 2 - 0.004} 1.02" rgba="0.5 0.35 0.2 1"/>'
         "</body>"
     )
