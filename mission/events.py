@@ -17,6 +17,7 @@ from mission.rigid import Pose
 if TYPE_CHECKING:  # events are plain data: making one must not import mujoco, open3d or sklearn
     from detector.result import WallResult
     from detector.room import View
+    from mission.door_faces import DoorFace
     from mission.evaluation import DoorEvaluation
     from mission.grid import OccupancyGrid
     from mission.planning import Plan
@@ -87,6 +88,8 @@ class RoomsTied(Event):
     """(4, 4) of each room that was entered."""
     links: tuple[Link, ...]
     """All links so far, those by doors and those by scans."""
+    faces: tuple[DoorFace, ...]
+    """All doors so far, from each side from which they were seen, in the frames of their rooms."""
     exits: tuple[str, ...]
     """Doors of the room that the robot can drive through."""
     refused: tuple[tuple[str, str], ...]

@@ -215,6 +215,7 @@ class Mission:
             RoomsTied,
             world_from_room=dict(self._building.world_from_room),
             links=tuple(self._building.links),
+            faces=tuple(self._building.faces()),
             exits=tuple(way.face.door_id for way in exits),
             refused=tuple((face.door_id, why) for face, why in refused),
         )

@@ -28,8 +28,8 @@ from mission.events import (
     Structured,
 )
 from mission.memory import peak_memory
+from mission.pose_errors import PoseError, pose_errors
 from mission.pose_graph import Link
-from mission.rigid import Pose, angle_between
 
 SCHEMA = 1
 """Version of the layout of doors.json."""
@@ -124,8 +124,21 @@ class Report:
     def _links(self) -> tuple[Link, ...]:
         return self.tied.links if self.tied else ()
 
-    def _world_from_room(self, room: int) -> Pose:
-        return self.tied.world_from_room.get(room, np.eye(4)) if self.tied else np.eye(4)
+    def _pose_errors(self) -> list[PoseError]:
+        return pose_errors(self.registrations, self.tied.world_from_room if self.tied else {})
+
+    def pose_metrics(self) -> dict[str, float | None]:
+        """Errors of the registered scans: within their rooms, and over the building."""
+        errors = self._pose_errors()
+        if not errors:
+            return dict.fromkeys(("within_room_median_m", "within_room_max_m", "max_m", "max_deg"))
+        within = [error.within_room for error in errors]
+        return {
+            "within_room_median_m": round(float(np.median(within)), 5),
+            "within_room_max_m": round(max(within), 5),
+            "max_m": round(max(error.translation for error in errors), 5),
+            "max_deg": round(float(np.degrees(max(error.rotation for error in errors))), 4),
+        }
 
     def metrics(self) -> dict[str, float | int | None]:
         """Counts, and means and maxima over the found doors; None where there is nothing to average."""
@@ -153,6 +166,7 @@ class Report:
             stage_seconds: Wall clock time of each stage [s].
             wall_clock: Of the whole program so far [s].
         """
+        errors = {error.scan: error for error in self._pose_errors()}
         return {
             "schema": SCHEMA,
             "scene": self.started.scene if self.started else None,
@@ -176,7 +190,8 @@ class Report:
             "metres_driven": _rounded(self.metres),
             "contacts": self.contacts,
             "mission_seconds": _rounded(self.finished.time / 1e9) if self.finished else None,
-            "registration": [_registration(event, self._world_from_room(event.room)) for event in self.registrations],
+            "poses": self.pose_metrics(),
+            "registration": [_registration(event, errors.get(event.scan_number)) for event in self.registrations],
             "wall_clock_seconds": round(wall_clock, 3),
             "stage_seconds": {stage: round(seconds, 3) for stage, seconds in stage_seconds.items()},
             "peak_memory_bytes": peak_memory(),
@@ -231,18 +246,16 @@ def _link(link: Link) -> dict[str, Any]:
     return {"rooms": [link.first, link.second], "doors": list(link.doors or ())}
 
 
-def _registration(event: Registered, world_from_room: Pose) -> dict[str, Any]:
-    world_from_scanner = world_from_room @ event.world_from_scanner
-    offset = world_from_scanner[:3, 3] - event.true_world_from_scanner[:3, 3]
-    angle = angle_between(event.true_world_from_scanner, world_from_scanner)
+def _registration(event: Registered, error: PoseError | None) -> dict[str, Any]:
     return {
         "scan": event.scan_number,
         "room": event.room,
         "accepted": event.accepted,
         "reason": event.reason,
         "fitness": _rounded(event.fitness),
-        "translation_error_m": round(float(np.linalg.norm(offset)), 5),
-        "rotation_error_deg": round(float(np.degrees(angle)), 4),
+        "within_room_error_m": round(error.within_room, 5) if error else None,
+        "translation_error_m": round(error.translation, 5) if error else None,
+        "rotation_error_deg": round(float(np.degrees(error.rotation)), 4) if error else None,
     }
 
 

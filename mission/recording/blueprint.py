@@ -78,7 +78,8 @@ def _mission(view: Outlook) -> rrb.Container:
     photo = rrb.Spatial2DView(
         origin=entities.CAMERA, contents=["$origin/**", f"{entities.DOORS}/**"], name="Photograph"
     )
-    side = rrb.Vertical(photo, _scatter())
+    graph = rrb.GraphView(origin=entities.GRAPH, name="Rooms and doors")
+    side = rrb.Vertical(rrb.Tabs(photo, graph, active_tab=0), _scatter())
     lanes = rrb.StateTimelineView(origin=entities.STATES, name="What the mission does")
     above = rrb.Horizontal(world, side, column_shares=[5, 2])
     below = rrb.Horizontal(lanes, _log(), column_shares=[5, 4])

@@ -26,6 +26,8 @@ TRUTH = "/world/truth/doors"
 TRUE_PATH = "/world/truth/path"
 SHOTS = "/world/shots"
 
+GRAPH = "/building/graph"
+
 ANGLES = "/plots/angle"
 COVERAGE = "/plots/coverage"
 SCATTER = "/figures/angle_against_joint"

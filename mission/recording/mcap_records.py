@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -133,15 +134,17 @@ def door(time: int, evaluation: DoorEvaluation, number: int) -> list[SceneEntity
 
 def rooms(event: RoomsTied) -> dict[str, Any]:
     """mission.Rooms."""
+    doors = {face.door_id: face.door for face in event.faces}
     return {
         "rooms": [{"room": room, "world_from_room": _flat(pose)} for room, pose in event.world_from_room.items()],
-        "links": [_link(link) for link in event.links],
+        "links": [_link(link, doors) for link in event.links],
         "exits": list(event.exits),
         "refused": [f"{door}: {why}" for door, why in event.refused],
     }
 
 
-def _link(link: Link) -> dict[str, Any]:
+def _link(link: Link, doors: Mapping[str, Door]) -> dict[str, Any]:
+    sides = [doors[door] for door in link.doors or ()]
     return {
         "first": link.first,
         "second": link.second,
@@ -150,6 +153,8 @@ def _link(link: Link) -> dict[str, Any]:
         "in_second": _flat(link.in_second),
         "turn": link.turn,
         "deviations": [*_flat(link.deviations), link.turn_deviation],
+        "states": [door.state for door in sides],
+        "opening_angles": [door.opening_angle for door in sides],
     }
 
 

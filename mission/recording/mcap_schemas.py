@@ -147,6 +147,8 @@ message RoomLink                          # what ties two rooms together
   repeated double in_second               # and in the second's [m]
   double turn                             # of the second frame in the first, about z [rad]
   repeated double deviations              # 1 sigma of the place [m], then of the turn [rad]
+  repeated string states                  # of the door, as each room saw it: closed, semi-open or open
+  repeated double opening_angles          # likewise [rad], NaN if not seen
 
 message Outcome                           # how the mission ended
   string outcome                          # completed, interrupted or failed

@@ -68,7 +68,7 @@ def summary(report: Report) -> str:
         lines += [f"## Room {room.id}", f"{room.scans} scans, {room.coverage:.1%} of the walls seen{stop}", ""]
         lines += _door_table(room.doors)
         lines += [f"- missed: `{name}`" for name in room.missed]
-    return "\n".join([*lines, "", *_metrics(report)])
+    return "\n".join([*lines, "", *_metrics(report), *_poses(report)])
 
 
 def configuration(started: MissionStarted) -> str:
@@ -229,3 +229,16 @@ def _metrics(report: Report) -> list[str]:
     if not any(room.doors or room.missed for room in report.rooms.values()):
         return []
     return [f"- {text}: {metrics[key]}" for key, text in words.items() if metrics[key] is not None]
+
+
+def _poses(report: Report) -> list[str]:
+    poses = report.pose_metrics()
+    if poses["max_m"] is None:
+        return []
+    words = {
+        "within_room_median_m": "scans within a room: median error [m]",
+        "within_room_max_m": "worst [m]",
+        "max_m": "scans in the building: worst error [m]",
+        "max_deg": "worst [deg]",
+    }
+    return ["- " + "; ".join(f"{text}: {poses[key]:.4f}" for key, text in words.items())]

@@ -20,12 +20,13 @@ from mission.recording.rerun_doors import Doors
 from mission.recording.rerun_plans import Plans
 from mission.recording.rerun_plots import Plots
 from mission.recording.rerun_results import Results
+from mission.recording.rerun_rooms import Rooms
 from mission.recording.rerun_walls import Walls
 from mission.recording.rerun_world import World
 
 APPLICATION = "door-mission"
 
-_Drawer = World | Plans | Doors | Walls | Plots | Results
+_Drawer = World | Plans | Doors | Walls | Rooms | Plots | Results
 
 
 class RerunSink:
@@ -84,7 +85,7 @@ class RerunSink:
         legend = [rr.AnnotationInfo(number, label, colour) for number, label, colour in entities.LEGEND]
         for root in (entities.WORLD, entities.STAGES_OF_WALLS):
             rec.log(root, rr.AnnotationContext(legend), static=True)
-        self._drawers = [drawer(rec) for drawer in (World, Plans, Doors, Walls, Plots, Results)]
+        self._drawers = [drawer(rec) for drawer in (World, Plans, Doors, Walls, Rooms, Plots, Results)]
 
     def _lay_out(self, event: Event) -> None:
         """Fit the viewer's layout to what is known by now: an interrupted recording opens well, too.

@@ -23,6 +23,7 @@ from detector.result import (
     WallResult,
 )
 from detector.room import View, VoxelLabel, Wall
+from mission.door_faces import DoorFace
 from mission.evaluation import DoorEvaluation
 from mission.grid import Cell, OccupancyGrid
 from mission.planning import Plan, ScanCandidate
@@ -208,3 +209,8 @@ def link() -> Link:
         turn_deviation=0.0005,
         doors=("1.2-a", "2.4-a"),
     )
+
+
+def faces(wall: Wall, found: Door) -> tuple[DoorFace, DoorFace]:
+    """The hall's door from room 1 and from room 2."""
+    return DoorFace("1.2-a", 1, wall, found, np.nan), DoorFace("2.4-a", 2, wall, found, np.nan)

@@ -49,6 +49,7 @@ def story(count: int = 2000) -> Story:
         172,
         world_from_room={1: np.eye(4), 2: made.pose(0.1, 0)},
         links=(made.link(),),
+        faces=made.faces(walls[1], doors[1][0]),
         exits=("1.2-a",),
         refused=(("1.3-a", "open by 0.00 m, 0.71 m needed"),),
     )
