@@ -26,11 +26,21 @@ examples:
   python -m mission bench walls --set scanner.pattern=draft --set detector.alpha3=0.04
 """
 
+BUILDING_EXAMPLES = """\
+examples:
+  python -m mission bench building
+  python -m mission bench building --seed 3 --set scanner.pattern=draft
+"""
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a command line and return its exit status."""
     options = parser().parse_args(arguments)
     try:
+        if options.command == "bench" and options.bench == "building":
+            from mission.bench.building.command import bench_building
+
+            return bench_building(options)
         if options.command == "bench":
             from mission.bench.walls.command import bench_walls
 
@@ -106,7 +116,9 @@ def parser() -> argparse.ArgumentParser:
     how.add_argument("--quiet", action="store_true", help="say nothing but errors")
     how.add_argument("--json", action="store_true", help="print doors and summary as one JSON object, nothing else")
     bench = kinds.add_parser("bench", help="measure how good the parts are", allow_abbrev=False)
-    _add_walls(bench.add_subparsers(title="benchmarks", dest="bench", required=True, metavar="NAME"))
+    benches = bench.add_subparsers(title="benchmarks", dest="bench", required=True, metavar="NAME")
+    _add_walls(benches)
+    _add_building(benches)
     return commands
 
 
@@ -152,6 +164,24 @@ def _add_walls(benches: argparse._SubParsersAction[OneLineParser]) -> None:
     walls.add_argument("--cache", metavar="DIR", help="folder of scanned rooms (default: ~/.cache/door-mission)")
     walls.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
     walls.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="one parameter, as for run; may be repeated"
+    )
+
+
+def _add_building(benches: argparse._SubParsersAction[OneLineParser]) -> None:
+    building = benches.add_parser(
+        "building",
+        help="a mission in a building of five rooms, whose doors show nine faces",
+        description="Run a mission in building.xml, compare every door with the truth from each room that sees it, and "
+        "print the paper's Table 3 with its numbers beside ours.",
+        epilog=BUILDING_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    building.add_argument("--seed", type=_seed, default=0, metavar="N", help="of all noise (default: 0)")
+    building.add_argument("--out", metavar="DIR", help="folder for the results (default: runs/bench-building-<n>)")
+    building.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
+    building.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one parameter, as for run; may be repeated"
     )
 

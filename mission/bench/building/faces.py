@@ -31,7 +31,7 @@ class Face:
 def door_faces(report: Report) -> list[Face]:
     """The true doors of each room in the order of rooms, those that were missed last."""
     doors = report.started.true_doors if report.started else ()
-    angles = {door.name: max(float(leaf.opening_angle) for leaf in door.leaves) for door in doors}
+    angles = {door.name: float(np.nanmax([0.0, *(leaf.opening_angle for leaf in door.leaves)])) for door in doors}
     faces = []
     for room in report.rooms.values():
         seen = [(door.true_name, door) for door in room.doors if door.true_name]
@@ -41,7 +41,7 @@ def door_faces(report: Report) -> list[Face]:
 
 
 def beside_paper(faces: Sequence[Face]) -> list[tuple[PaperFace | None, Face | None]]:
-    """Each row of the paper with a face of ours whose door stands like it, if one is left; then what is left of ours."""
+    """Each row of the paper with a face of ours whose door stands like it, if one is left; then the rest of ours."""
     left = list(faces)
     pairs: list[tuple[PaperFace | None, Face | None]] = []
     for row in TABLE_3:

@@ -163,17 +163,17 @@ LIBRARY = Room(  # an L with an oblique corner, a chimney breast and a beam
     standing=(Standing((5.1, 13.5), 0.0, Chair(palette.sand_fabric)),),
 )  # fmt: skip
 
-DINING = Room(  # an L with an oblique corner, a niche and a pillar
+DINING = Room(  # an L with an oblique corner, a bay window and a pillar
     "dining",
     corners=(
-        (13.0, 18.0), (16.2, 18.0), (16.2, 20.7), (21.0, 20.7), (23.0, 18.7), (23.0, 16.0), (23.6, 16.0),
-        (23.6, 14.2), (23.0, 14.2), (23.0, 11.15), (13.0, 11.15),
+        (13.0, 18.0), (16.2, 18.0), (16.2, 20.7), (21.0, 20.7), (23.0, 18.7), (23.0, 16.6), (23.6, 16.6),
+        (23.6, 13.4), (23.0, 13.4), (23.0, 11.15), (13.0, 11.15),
     ),
     height=2.9,
     paint=palette.paint_white,
     floor=palette.stone,
     lamps=((17.0, 14.5), (18.6, 18.6)),
-    pillars=(Pillar((19.8, 16.8), (0.5, 0.5), 0.0, palette.paint_grey),),
+    pillars=(Pillar((19.2, 15.9), (0.5, 0.5), 0.0, palette.paint_grey),),
     sides={
         1: Side(stood=(Stood(1.6, 0.03, Wardrobe(1.5, 2.0, palette.white_furniture)),)),
         2: Side(hung=(_picture(1.35, 0.8, 1.0, palette.picture_warm),)),
@@ -182,10 +182,10 @@ DINING = Room(  # an L with an oblique corner, a niche and a pillar
             stood=(Stood(2.4, 0.01, Kitchen(3.0, palette.white_furniture, palette.anthracite)),),
         ),
         4: Side(windows=_window(0.7, 1.4), hung=(_radiator(0.7, 1.4),)),
-        7: Side(windows=_window(0.3, 1.2), hung=(_radiator(0.3, 1.2),)),
+        7: Side(windows=_window(0.6, 2.0), hung=(_radiator(0.6, 2.0),)),
         9: Side(
-            hung=(_picture(1.5, 1.0, 0.7, palette.picture_cold),),
-            stood=(Stood(1.5, 0.03, Shelf(1.4, 0.9, 0.36, palette.beech, 51)),),
+            hung=(_picture(1.1, 1.0, 0.7, palette.picture_cold),),
+            stood=(Stood(1.1, 0.03, Shelf(1.4, 0.9, 0.36, palette.beech, 51)),),
         ),
         10: Side(
             paint=palette.paint_sky,
@@ -274,7 +274,7 @@ BUILDING = House(
         Start("start_2", (5.6, 8.2), 0.0),
         Start("start_3", (21.3, 6.2), 90.0),
         Start("start_4", (8.8, 16.0), 0.0),
-        Start("start_5", (18.9, 14.6), 90.0),
+        Start("start_5", (19.0, 13.9), 90.0),
     ),
     outer=0.3,
     outside=(

@@ -44,7 +44,7 @@ HEADER = """
   <compiler angle="degree"/>
   <option timestep="0.002" integrator="implicitfast"/>
   <visual>
-    <headlight ambient="0.5 0.5 0.5" diffuse="0.3 0.3 0.3" specular="0.1 0.1 0.1"/>
+    <headlight ambient="0.6 0.6 0.6" diffuse="0.3 0.3 0.3" specular="0.1 0.1 0.1"/>
     <global offwidth="1280" offheight="960"/>
     <map znear="0.005" zfar="4"/>
   </visual>
@@ -221,7 +221,7 @@ def _add_starts_and_lights(building: Node, house: House) -> None:
     building.comment("Lights, for viewers: the robot's camera has its own flash")
     for room in house.rooms:
         for x, y in room.lamps:
-            light = {"pos": numbers((x, y, room.height - 0.6)), "dir": "0 0 -1", "diffuse": "0.35 0.35 0.33"}
+            light = {"pos": numbers((x, y, room.height - 0.6)), "dir": "0 0 -1", "diffuse": "0.45 0.45 0.43"}
             ElementTree.SubElement(building.element, "light", {**light, "cutoff": "90", "castshadow": "false"})
 
 
