@@ -85,6 +85,11 @@ def parser() -> argparse.ArgumentParser:
     )
     run.add_argument("--keyframe", metavar="NAME", help="start from a keyframe of the scene (default: the first)")
     run.add_argument("--max-scans", type=_positive, metavar="N", help="at most so many scans")
+    run.add_argument(
+        "--planner",
+        choices=("nbs", "frontier", "random", "grid"),
+        help="how scan places are chosen: next best scan (the default) or a baseline, short for planning.planner",
+    )
     run.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
     run.add_argument(
         "--set",

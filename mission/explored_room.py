@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -73,8 +74,9 @@ class ExploredRoom:
         *,
         world_from_base: Pose,
         base_from_scanner: Pose,
+        seed: Sequence[int] = (0,),
     ) -> Plan:
-        """The next best scan, or why there is none."""
+        """Where to scan next, or why the room is done; the seed is for a choice by chance."""
         return plan_next_scan(
             voxels,
             self._points_in_world,
@@ -89,6 +91,7 @@ class ExploredRoom:
             scanner=self.config.scanner,
             navigation=self.config.navigation,
             parameters=self.config.planning,
+            seed=seed,
         )
 
     @property

@@ -184,6 +184,7 @@ class Mission:
                     grid,
                     world_from_base=mopad.world_from_base,
                     base_from_scanner=mopad.robot.base_from_scanner,
+                    seed=(self._seed, self._steps),
                 )
             yield self._event(Planned, scan_number=self._scans, plan=plan, grid=grid)
             if plan.path is None:

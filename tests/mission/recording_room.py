@@ -23,9 +23,10 @@ from detector.result import (
     WallResult,
 )
 from detector.room import View, VoxelLabel, Wall
+from mission.candidates import ScanCandidate
 from mission.evaluation import DoorEvaluation
 from mission.grid import Cell, OccupancyGrid
-from mission.planning import Plan, ScanCandidate
+from mission.planning import Plan
 from mission.structure import Structure
 from mission.voxels import FLOOR, LevelGrid, VoxelModel
 from mission.wall_finder import WallRectangle
