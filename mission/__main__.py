@@ -33,24 +33,49 @@ examples:
 """
 
 
+PLANNERS_EXAMPLES = """\
+examples:
+  python -m mission bench planners
+  python -m mission bench planners --scene room.xml --seed 0 1 2 3 4
+  python -m mission bench planners --scene my_flat.xml --planner nbs --planner frontier --jobs 2
+  python -m mission bench planners --set planning.travel_cost=0.1 --set planning.max_scans=6
+"""
+COVERAGE_HELP = """\
+coverage is the share of a room's visible structure that its scans have a return of: of all 10 cm cells of its walls,
+floor and ceiling that an exact scanner sees from any place in the room where the robot can stand. It is computed from
+the scene for the tables; no planner reads it. Every room that the robot can get into (the start's, those of sites
+start_2, start_3..., and those behind doors that stand wide enough) is explored on its own, without photographs.
+"""
+PLANNERS = ("nbs", "frontier", "random", "grid")
+"""As in `planning.planner`."""
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run a command line and return its exit status."""
     options = parser().parse_args(arguments)
     try:
-        if options.command == "bench" and options.bench == "building":
-            from mission.bench.building.command import bench_building
-
-            return bench_building(options)
         if options.command == "bench":
-            from mission.bench.walls.command import bench_walls
-
-            return bench_walls(options)
+            return _bench(options)
         from mission.run import run  # imports mujoco, rerun and the rest: not needed for --help
 
         return run(options)
     except KeyboardInterrupt:
         print(f"interrupted before the {options.command} began", file=sys.stderr)
         return 130
+
+
+def _bench(options: argparse.Namespace) -> int:
+    if options.bench == "planners":
+        from mission.bench.planners.command import bench_planners
+
+        return bench_planners(options)
+    if options.bench == "building":
+        from mission.bench.building.command import bench_building
+
+        return bench_building(options)
+    from mission.bench.walls.command import bench_walls
+
+    return bench_walls(options)
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -96,6 +121,11 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("--keyframe", metavar="NAME", help="start from a keyframe of the scene (default: the first)")
     run.add_argument("--max-scans", type=_positive, metavar="N", help="at most so many scans a room")
     run.add_argument("--max-rooms", type=_positive, metavar="N", help="at most so many rooms")
+    run.add_argument(
+        "--planner",
+        choices=PLANNERS,
+        help="how scan places are chosen: next best scan (the default) or a baseline, short for planning.planner",
+    )
     run.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
     run.add_argument(
         "--set",
@@ -119,6 +149,7 @@ def parser() -> argparse.ArgumentParser:
     benches = bench.add_subparsers(title="benchmarks", dest="bench", required=True, metavar="NAME")
     _add_walls(benches)
     _add_building(benches)
+    _add_planners(benches)
     return commands
 
 
@@ -153,17 +184,53 @@ def _add_walls(benches: argparse._SubParsersAction[OneLineParser]) -> None:
         choices=("delta", "alpha1", "alpha2", "alpha3", "sigma"),
         help="nine values of a parameter of the detector: Table 6",
     )
-    walls.add_argument("--jobs", type=_positive, metavar="N", help="rooms at a time, 2 GB each (default: one a core)")
-    walls.add_argument(
+    _add_workers(walls)
+    walls.add_argument("--cache", metavar="DIR", help="folder of scanned rooms (default: ~/.cache/door-mission)")
+    _add_configuration(walls)
+
+
+def _add_planners(benches: argparse._SubParsersAction[OneLineParser]) -> None:
+    planners = benches.add_parser(
+        "planners",
+        help="next best scan beside nearest frontier, random and grid: scans, metres, coverage",
+        description="Explore every room of the scenes with every planner, and print what each needed and saw.",
+        epilog=COVERAGE_HELP + "\n" + PLANNERS_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    planners.add_argument(
+        "--seed", type=_seed, nargs="+", default=[0, 1, 2], metavar="N", help="of all noise and chance (default: 0 1 2)"
+    )
+    planners.add_argument(
+        "--scene",
+        action="append",
+        metavar="SCENE",
+        help="MJCF file, as for run; may be repeated (default: room.xml, flat.xml and building.xml)",
+    )
+    planners.add_argument(
+        "--planner", action="append", choices=PLANNERS, help="which; may be repeated (default: all of them)"
+    )
+    planners.add_argument("--out", metavar="DIR", help="folder for the results (default: runs/bench-planners-<n>)")
+    _add_workers(planners)
+    _add_configuration(planners)
+
+
+def _add_workers(bench: OneLineParser) -> None:
+    bench.add_argument(
+        "--jobs", type=_positive, metavar="N", help="rooms at a time, up to 2 GB each (default: one a core)"
+    )
+    bench.add_argument(
         "--backend",
         choices=("loky", "dask", "ray"),
         default="loky",
         help="what runs them: processes here (loky, the default), or the Dask or Ray cluster that "
         "DASK_SCHEDULER_ADDRESS or RAY_ADDRESS names",
     )
-    walls.add_argument("--cache", metavar="DIR", help="folder of scanned rooms (default: ~/.cache/door-mission)")
-    walls.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
-    walls.add_argument(
+
+
+def _add_configuration(bench: OneLineParser) -> None:
+    bench.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
+    bench.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="one parameter, as for run; may be repeated"
     )
 

@@ -11,10 +11,10 @@ from typing import Any
 from pydantic import Field, ValidationError
 
 from detector.parameters import DetectorParameters
+from mission.candidates import PlanningParameters
 from mission.errors import UsageError
 from mission.linking import LinkParameters
 from mission.navigation import NavigationParameters
-from mission.planning import PlanningParameters
 from mission.registration import RegistrationParameters
 from mission.samples import SampleParameters
 from mission.structure import StructureParameters

@@ -88,8 +88,9 @@ class ExploredRoom:
         *,
         world_from_base: Pose,
         base_from_scanner: Pose,
+        seed: Sequence[int] = (0,),
     ) -> Plan:
-        """The next best scan, or why there is none."""
+        """Where to scan next, or why the room is done; the seed is for a choice by chance."""
         return plan_next_scan(
             voxels,
             self.points,
@@ -104,6 +105,7 @@ class ExploredRoom:
             scanner=self.config.scanner,
             navigation=self.config.navigation,
             parameters=self.config.planning,
+            seed=seed,
         )
 
     @property

@@ -98,7 +98,7 @@ class TerminalProgress:
         x, y = chosen.position
         self._say(
             event,
-            f"next best scan at ({x:.2f}, {y:.2f}), {chosen.travel:.1f} m away, "
+            f"next scan at ({x:.2f}, {y:.2f}), {chosen.travel:.1f} m away, "
             f"of {len(plan.candidates)} candidates; {plan.coverage:.0%} of walls, floor and ceiling seen",
         )
 

@@ -53,9 +53,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         bars = dict(_setting("--fail-under", text) for text in options.fail_under)
         _check_metrics(bars)
-        limits = {"planning.max_scans": options.max_scans, "planning.max_rooms": options.max_rooms}
-        settings = [*options.set, *(f"{key}={limit}" for key, limit in limits.items() if limit)]
-        config = read_config(options.config, settings)
+        config = read_config(options.config, [*options.set, *_shorthands(options)])
         angles = {name: math.radians(angle) for name, angle in (_setting("--door", text) for text in options.door)}
         scene = load_scene(find_scene(options.scene), door_angles=angles, keyframe=options.keyframe)
         progress = TerminalProgress(console)
@@ -203,6 +201,16 @@ def _numbered(runs: Path, stem: str) -> Path:
             continue
         return folder
     raise AssertionError("unreachable")
+
+
+def _shorthands(options: argparse.Namespace) -> list[str]:
+    """Options that stand for a parameter."""
+    given = {
+        "planning.max_scans": options.max_scans,
+        "planning.max_rooms": options.max_rooms,
+        "planning.planner": options.planner,
+    }
+    return [f"{key}={value}" for key, value in given.items() if value is not None]
 
 
 def _setting(option: str, text: str) -> tuple[str, float]:

@@ -51,8 +51,9 @@ class Surveyor:
     The simulator's truth (poses, joints) goes into events only: no stage reads it.
     """
 
-    def __init__(self, scene: Scene, mopad: Mopad, config: MissionConfig, stopwatch: Stopwatch) -> None:
+    def __init__(self, scene: Scene, mopad: Mopad, config: MissionConfig, stopwatch: Stopwatch, *, seed: int) -> None:
         self._scene, self._mopad, self._config, self._stopwatch = scene, mopad, config, stopwatch
+        self._seed = seed
         self._steps = 0
         self._scans = 0
         self.room = 1
@@ -69,14 +70,20 @@ class Surveyor:
         remarked: Remarked = self.event(Remarked, level="warning", text=text)
         return remarked
 
-    def survey(self, room: ExploredRoom) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
+    def survey(
+        self, room: ExploredRoom, *, photograph: bool = True
+    ) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
         """Scan a room from place to place until there is no more to gain.
+
+        Args:
+            room: To be scanned; the robot stands in it.
+            photograph: Whether to take colours, too; the plan does not depend on them.
 
         Raises:
             MissionError: There is no room.
         """
         while True:
-            yield from self._scan_here(room)
+            yield from self._scan_here(room, photograph=photograph)
             structure, voxels = yield from self._understand(room)
             arrived = yield from self._move_on(room, structure, voxels)
             if not arrived:
@@ -109,20 +116,22 @@ class Surveyor:
         yield drove
         return bool(drove.arrived)
 
-    def _scan_here(self, room: ExploredRoom) -> Iterator[Event]:
+    def _scan_here(self, room: ExploredRoom, *, photograph: bool) -> Iterator[Event]:
         """Scan, photograph, register and colour at the present pose."""
         scan = yield from self._scan()
-        with self._stopwatch("photograph"):
-            photos = self._mopad.photograph()
-        yield self.event(Photographed, scan_number=self._scans, photos=photos)
+        if photograph:
+            with self._stopwatch("photograph"):
+                photos = self._mopad.photograph()
+            yield self.event(Photographed, scan_number=self._scans, photos=photos)
         sample, found = yield from self._register(room, scan)
         if not found.accepted:
             return
         self._look_around(room)
         room.samples.append(place(sample, found.world_from_scanner))
-        with self._stopwatch("colour"):
-            room.views.append(colour_scan(scan, photos, found.world_from_scanner))
-        yield self.event(Coloured, scan_number=self._scans, view=room.views[-1])
+        if photograph:
+            with self._stopwatch("colour"):
+                room.views.append(colour_scan(scan, photos, found.world_from_scanner))
+            yield self.event(Coloured, scan_number=self._scans, view=room.views[-1])
 
     def _scan(self) -> Generator[Event, None, Scan]:
         self._scans += 1
@@ -183,6 +192,7 @@ class Surveyor:
                     grid,
                     world_from_base=mopad.world_from_base,
                     base_from_scanner=mopad.robot.base_from_scanner,
+                    seed=(self._seed, self._steps),
                 )
             yield self.event(Planned, scan_number=self._scans, plan=plan, grid=grid)
             if plan.path is None:

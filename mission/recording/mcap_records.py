@@ -15,8 +15,8 @@ from mission.recording import mcap_messages as messages
 from mission.recording.drawing import TRUTH_COLOUR, WALL_COLOUR, Outlined, angle_label, closed, outline, palette, quads
 
 if TYPE_CHECKING:
+    from mission.candidates import ScanCandidate
     from mission.evaluation import DoorEvaluation
-    from mission.planning import ScanCandidate
     from mission.pose_graph import Link
     from sim.robot import RobotShape
 

@@ -67,7 +67,7 @@ message Candidate                         # a place to scan from
   double score                            # the choice goes by it
   string reason                           # why it is out of the question, else empty
 
-message Plan                              # next best scan
+message Plan                              # where to scan next
   uint32 scan                             # last scan it rests on
   repeated Candidate candidates
   int32 chosen                            # index of the chosen candidate, -1 for none

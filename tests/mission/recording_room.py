@@ -23,10 +23,11 @@ from detector.result import (
     WallResult,
 )
 from detector.room import View, VoxelLabel, Wall
+from mission.candidates import ScanCandidate
 from mission.door_faces import DoorFace
 from mission.evaluation import DoorEvaluation
 from mission.grid import Cell, OccupancyGrid
-from mission.planning import Plan, ScanCandidate
+from mission.planning import Plan
 from mission.pose_graph import Link
 from mission.structure import Structure
 from mission.voxels import FLOOR, LevelGrid, VoxelModel

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from mission.candidates import PlanningParameters, worth
 from mission.grid import Cell, OccupancyGrid
-from mission.planning import Plan, PlanningParameters, plan_next_scan, worth
+from mission.planning import Plan, plan_next_scan
 from tests.mission.driving_world import FOOTPRINT
 from tests.mission.voxel_room import (
     DEPTH,

@@ -5,43 +5,27 @@ from __future__ import annotations
 import argparse
 import logging
 import sys
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Protocol, TypeVar
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
-from rich.text import Text
 
 from detector.room import DetectorError
 from mission.bench.parallel import Workers, default_jobs
+from mission.bench.terminal import Runner, print_tables, progress_bar, run_tasks
 from mission.bench.walls.cache import cached_scan, default_folder
 from mission.bench.walls.judging import WallJudgement, judge_room
 from mission.bench.walls.report import BenchReport, write_report
 from mission.bench.walls.rooms import CATEGORIES, BenchRoom, rooms
-from mission.bench.walls.tables import BenchTable
 from mission.bench.walls.variants import Variant, variants
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError, UsageError
 from mission.run import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder
 from sim.errors import SimError
 
-TABLE_WIDTH = 150
-"""Where no terminal tells its width."""
-
-T = TypeVar("T")
 Judged = dict[Variant, list[WallJudgement]]
 """Judgements of all walls, by what was varied."""
-
-
-class Runner(Protocol):
-    """What runs tasks."""
-
-    def __call__(self, what: str, tasks: Mapping[str, Callable[[], T]], /) -> list[T]:
-        """What the tasks return, in their order; `what` and their names tell a person what goes on."""
 
 
 def bench_walls(options: argparse.Namespace) -> int:
@@ -54,8 +38,8 @@ def bench_walls(options: argparse.Namespace) -> int:
         cache = Path(options.cache) if options.cache else default_folder()
         cache.mkdir(parents=True, exist_ok=True)  # now, not after minutes of scanning
         folder = make_folder(options.out, scene_name="bench-walls", first_file="result.json")
-        with Workers(options.backend, options.jobs or default_jobs()) as workers, _progress(log) as progress:
-            run = partial(_run, workers, progress)
+        with Workers(options.backend, options.jobs or default_jobs()) as workers, progress_bar(log) as progress:
+            run = partial(run_tasks, workers, progress)
             judged = judge(
                 generate(list(dict.fromkeys(options.seed)), categories, run=run),
                 variants(config, ablate=options.ablate, sweep=options.sweep),
@@ -63,7 +47,7 @@ def bench_walls(options: argparse.Namespace) -> int:
                 run=run,
             )
         report = BenchReport(judged, ablate=options.ablate, sweep=options.sweep, config=config)
-        _print(report.tables())
+        print_tables(report.tables())
         write_report(folder, report)
     except (SimError, MissionError, OSError) as error:
         print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
@@ -145,43 +129,3 @@ def _categories(options: argparse.Namespace) -> tuple[str, ...] | None:
         if category not in CATEGORIES:
             raise UsageError(f"--category {category!r}: known are {', '.join(map(repr, CATEGORIES))}")
     return tuple(dict.fromkeys(options.category))
-
-
-def _progress(console: Console) -> Progress:
-    return Progress(
-        SpinnerColumn(),
-        TextColumn("{task.description:<10}"),
-        BarColumn(bar_width=24),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        console=console,
-        transient=True,
-    )
-
-
-def _run(workers: Workers, progress: Progress, what: str, tasks: Mapping[str, Callable[[], T]]) -> list[T]:
-    """Run tasks behind a bar; where there is no terminal, a line tells of each."""
-    names, results = list(tasks), dict[int, T]()
-    for number, result in progress.track(workers.run(tasks.values()), total=len(tasks), description=what):
-        results[number] = result
-        if not progress.console.is_terminal:
-            progress.console.print(
-                f"{what} {len(results)}/{len(tasks)}: {names[number]}", highlight=False, markup=False
-            )
-    return [results[number] for number in range(len(tasks))]
-
-
-def _print(tables: Sequence[BenchTable]) -> None:
-    console = Console(width=None if sys.stdout.isatty() else TABLE_WIDTH)
-    for table in tables:
-        console.print(_as_rich(table))
-        console.print()
-
-
-def _as_rich(table: BenchTable) -> Table:
-    shown = Table(title=table.title, title_justify="left", box=SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    for place, column in enumerate(table.header):
-        shown.add_column(Text(column), justify="right" if place else "left")
-    for row in table.rows:
-        shown.add_row(*map(Text, row), style="dim" if row[0].startswith("  ") else None)
-    return shown

@@ -8,11 +8,11 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from mission.bench.tables import BenchTable
 from mission.bench.walls import figures, tables
 from mission.bench.walls.judging import WallJudgement
 from mission.bench.walls.rows import DoorRow
 from mission.bench.walls.statistics import Metrics, failures, highlights, metrics, reliability, rows_of, stage_times
-from mission.bench.walls.tables import BenchTable
 from mission.bench.walls.variants import Variant, configured
 from mission.config import MissionConfig
 from mission.recording.rerun_bench import write_bench

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
+from mission.bench.tables import BenchTable
 from mission.bench.walls import paper
 from mission.bench.walls.glossy import NONE
 from mission.bench.walls.judging import WallJudgement
@@ -15,20 +15,6 @@ from mission.bench.walls.statistics import Metrics, ReliabilityBin, failures, hi
 MEASURES = {"precision": "precision", "recall": "recall", "e_abs": "e_abs [m2]", "e_rel": "e_rel"}
 F_MEASURES = {"f05": "F0.5", "f1": "F1", "f2": "F2"}
 ALL = "all"
-
-
-@dataclass(frozen=True)
-class BenchTable:
-    """A table as text."""
-
-    title: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-    def markdown(self) -> str:
-        """For documents."""
-        lines = [self.header, ("---", *["---:"] * (len(self.header) - 1)), *self.rows]
-        return f"## {self.title}\n\n" + "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
 
 
 def table_4(judgements: Sequence[WallJudgement]) -> BenchTable:
