@@ -115,11 +115,11 @@ def clear_span(door: Door) -> tuple[float, float]:
     if door.kind == "sliding":
         slid = sum(leaf.slid for leaf in door.leaves)
         return (low, low + slid) if slid > 0 else (high + slid, high)
-    for leaf in door.leaves:
+    for place, leaf in enumerate(door.leaves):
         if not np.isfinite(leaf.opening_angle):
             continue  # a passage whose leaf, if any, stands nowhere near
         across = max(r.width / len(door.leaves) * float(np.cos(leaf.opening_angle)), _THICKNESS)
-        if leaf.hinge == "right":
+        if leaf.hinge == "right" or place > 0:
             high = min(high, r.right - across)
         else:
             low = max(low, r.left + across)

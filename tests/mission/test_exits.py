@@ -38,6 +38,7 @@ def exits_of(one: Door, points: NDArray[np.float64] = NOTHING) -> tuple[list, li
         (door(1.0, 1.9, leaf(0, "left")), (1.9, 1.9)),
         (door(1.0, 1.9, leaf(np.nan, "none")), (1.0, 1.9)),  # a passage
         (door(1.0, 2.8, leaf(90, "left"), leaf(0, "right"), kind="double"), (1.05, 1.9)),
+        (door(1.0, 2.8, leaf(0, "none"), leaf(0, "none"), kind="double"), (1.9, 1.9)),
         (door(1.0, 1.9, leaf(0, "none", slid=0.8), kind="sliding"), (1.0, 1.8)),
         (door(1.0, 1.9, leaf(0, "none", slid=-0.8), kind="sliding"), (1.1, 1.9)),
     ],
