@@ -8,16 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.orthoimage import column_medians
+from detector.angle import CLOSED_SHARE, slope_in_doorway
 from detector.result import Door, WallResult
 from detector.room import Wall
 
 CLOSED = np.radians(8.0)
 """A leaf at a smaller angle lies near enough to the wall for its recess to be read from the orthoimage [rad]."""
-_DEEPEST = 0.4
-"""What lies further from the wall's plane is no closed leaf [m]."""
-_INSET = 0.15
-"""Share of the doorway at each side that is left out: rebates, hinges, gaps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,19 +61,9 @@ def _letters(number: int) -> str:
 
 
 def _recess(result: WallResult, door: Door) -> float:
-    """Depth of a leaf behind the wall's plane in the middle of the doorway, from its columns in the orthoimage."""
+    """Depth of a leaf behind the wall's plane in the middle of the doorway [m]; NaN where none fills it."""
     if not door.leaves or not all(leaf.opening_angle < CLOSED for leaf in door.leaves):  # NaN compares false
         return float("nan")
-    r, depth, size = door.rectangle, result.merged.depth, result.merged.pixel_size
-    columns = np.arange(depth.shape[1]) * size + size / 2
-    heights = result.wall.height - (np.arange(depth.shape[0]) * size + size / 2)
-    across = (columns > r.left + _INSET * r.width) & (columns < r.right - _INSET * r.width)
-    middle = (r.left + r.right) / 2
-    up = (heights > r.bottom + _INSET * r.height) & (heights < r.top - _INSET * r.height)
-    leaf = depth[np.ix_(up, across)]
-    leaf[np.abs(leaf) > _DEEPEST] = np.nan
-    seen = np.count_nonzero(np.isfinite(leaf), axis=0) >= 10
-    if np.count_nonzero(seen) < 10:
-        return float("nan")
-    at, behind = columns[across][seen], -column_medians(leaf[:, seen])
-    return float(np.polyval(np.polyfit(at - middle, behind, 1), 0.0))
+    merged = result.merged
+    _, depth, share = slope_in_doorway(merged.depth, door.rectangle, result.wall.height, merged.pixel_size)
+    return -depth if share >= CLOSED_SHARE else float("nan")
