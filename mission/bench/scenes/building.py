@@ -173,7 +173,7 @@ DINING = Room(  # an L with an oblique corner, a bay window and a pillar
     paint=palette.paint_white,
     floor=palette.stone,
     lamps=((17.0, 14.5), (18.6, 18.6)),
-    pillars=(Pillar((19.2, 15.9), (0.5, 0.5), 0.0, palette.paint_grey),),
+    pillars=(Pillar((19.8, 15.0), (0.5, 0.5), 0.0, palette.paint_grey),),
     sides={
         1: Side(stood=(Stood(1.6, 0.03, Wardrobe(1.5, 2.0, palette.white_furniture)),)),
         2: Side(hung=(_picture(1.35, 0.8, 1.0, palette.picture_warm),)),
@@ -274,7 +274,7 @@ BUILDING = House(
         Start("start_2", (5.6, 8.2), 0.0),
         Start("start_3", (21.3, 6.2), 90.0),
         Start("start_4", (8.8, 16.0), 0.0),
-        Start("start_5", (19.0, 13.9), 90.0),
+        Start("start_5", (19.0, 13.1), 90.0),
     ),
     outer=0.3,
     outside=(
