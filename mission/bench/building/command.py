@@ -14,7 +14,7 @@ from rich.console import Console
 from mission.bench.building import paper
 from mission.bench.building.faces import door_faces
 from mission.bench.building.tables import table_3
-from mission.bench.printing import print_tables
+from mission.bench.terminal import print_tables
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError
 from mission.mission import Mission

@@ -5,7 +5,8 @@ from __future__ import annotations
 from mission.angles import rounded_degrees
 from mission.bench.building import paper
 from mission.bench.building.faces import Face, beside_paper, door_faces
-from mission.bench.walls.tables import BenchTable, number
+from mission.bench.tables import BenchTable
+from mission.bench.walls.tables import number
 from mission.report import Report
 
 _MEASURES = ("precision", "recall", "e_abs", "e_rel")
