@@ -14,23 +14,23 @@ from mission.bench.walls.fixtures import Clock, Radiator, Sheet, Socket
 from mission.bench.walls.furniture import Boxes, Chair, CoatStand, Plant, Shelf, Sofa, Table
 from mission.bench.walls.plans import DoorPlan, Frame, Hung, Stood, WindowPlan
 
-ARCHITRAVE = Frame("architrave", 0.07, 0.012, palette.frame_white)
+ARCHITRAVE = Frame("architrave", 0.07, 0.012, palette.FRAME_WHITE)
 _SILL, _PANES = 0.9, 1.3
 
 HALL = Room(
     "hall",
     corners=((0.0, 4.8), (3.4, 4.8), (3.4, 0.0), (0.0, 0.0)),
     height=2.5,
-    paint=palette.paint_ivory,
-    floor=palette.stone,
+    paint=palette.PAINT_IVORY,
+    floor=palette.STONE,
     lamps=((1.7, 2.6),),
     sides={
-        1: Side(hung=(Hung(2.85, 1.6, Sheet(0.45, 0.6, palette.picture_cold, rim=BLACK)), Hung(2.3, 1.1, Socket()))),
-        2: Side(hung=(Hung(0.6, 1.55, Sheet(0.8, 0.55, palette.picture_warm, rim=WHITE)),)),
-        3: Side(stood=(Stood(0.3, 0.03, CoatStand(palette.green_fabric)),)),
+        1: Side(hung=(Hung(2.85, 1.6, Sheet(0.45, 0.6, palette.PICTURE_COLD, rim=BLACK)), Hung(2.3, 1.1, Socket()))),
+        2: Side(hung=(Hung(0.6, 1.55, Sheet(0.8, 0.55, palette.PICTURE_WARM, rim=WHITE)),)),
+        3: Side(stood=(Stood(0.3, 0.03, CoatStand(palette.GREEN_FABRIC)),)),
         4: Side(
-            stood=(Stood(0.72, 0.03, Low(0.9, 0.32, 0.78, palette.beech)),),
-            hung=(Hung(0.72, 1.55, Sheet(0.5, 0.9, palette.white_furniture, rim=BLACK)),),
+            stood=(Stood(0.72, 0.03, Low(0.9, 0.32, 0.78, palette.BEECH)),),
+            hung=(Hung(0.72, 1.55, Sheet(0.5, 0.9, palette.WHITE_FURNITURE, rim=BLACK)),),
         ),
     },
 )
@@ -39,34 +39,34 @@ LIVING = Room(
     "living",
     corners=((3.55, 4.8), (7.35, 4.8), (8.75, 3.2), (8.75, -0.2), (3.55, -0.2)),
     height=2.7,
-    paint=palette.paint_plaster,
-    floor=palette.boards,
+    paint=palette.PAINT_PLASTER,
+    floor=palette.BOARDS,
     lamps=((6.1, 2.3),),
     sides={
         1: Side(
-            hung=(Hung(1.9, 1.55, Sheet(1.1, 0.75, palette.picture_dark, rim=BLACK)),),
-            stood=(Stood(1.6, 0.02, Shelf(1.1, 0.85, 0.36, palette.cherry, 3)),),
+            hung=(Hung(1.9, 1.55, Sheet(1.1, 0.75, palette.PICTURE_DARK, rim=BLACK)),),
+            stood=(Stood(1.6, 0.02, Shelf(1.1, 0.85, 0.36, palette.CHERRY, 3)),),
         ),
         2: Side(windows=(WindowPlan(0.45, 1.2, _SILL, _PANES, WHITE),), hung=(Hung(1.05, 0.45, Radiator(1.0)),)),
         3: Side(
-            paint=palette.paint_mint,
+            paint=palette.PAINT_MINT,
             windows=(WindowPlan(0.7, 1.7, _SILL, _PANES, WHITE),),
             hung=(Hung(1.55, 0.45, Radiator(1.4)),),
         ),
         4: Side(
             stood=(
-                Stood(2.5, 0.03, Sofa(2.0, palette.blue_fabric)),
+                Stood(2.5, 0.03, Sofa(2.0, palette.BLUE_FABRIC)),
                 Stood(0.45, 0.06, Plant(1.6, 0.32, 4)),
-                Stood(4.5, 0.02, Shelf(1.0, 1.9, 0.34, palette.cherry, 5)),
+                Stood(4.5, 0.02, Shelf(1.0, 1.9, 0.34, palette.CHERRY, 5)),
             ),
-            hung=(Hung(2.5, 1.6, Sheet(1.2, 0.7, palette.picture_warm, rim=WHITE)), Hung(3.7, 2.05, Clock())),
+            hung=(Hung(2.5, 1.6, Sheet(1.2, 0.7, palette.PICTURE_WARM, rim=WHITE)), Hung(3.7, 2.05, Clock())),
         ),
     },
     standing=(
-        Standing((7.65, 2.4), 90.0, DiningTable(1.4, 0.85, palette.beech)),
-        Standing((7.15, 2.1), 90.0, Chair(palette.red_fabric)),
-        Standing((7.15, 2.75), 90.0, Chair(palette.red_fabric)),
-        Standing((8.1, 1.25), -165.0, Chair(palette.red_fabric)),
+        Standing((7.65, 2.4), 90.0, DiningTable(1.4, 0.85, palette.BEECH)),
+        Standing((7.15, 2.1), 90.0, Chair(palette.RED_FABRIC)),
+        Standing((7.15, 2.75), 90.0, Chair(palette.RED_FABRIC)),
+        Standing((8.1, 1.25), -165.0, Chair(palette.RED_FABRIC)),
     ),
 )
 
@@ -74,8 +74,8 @@ BEDROOM = Room(
     "bedroom",
     corners=((0.0, 9.58), (4.8, 9.58), (4.8, 4.98), (0.0, 4.98)),
     height=2.6,
-    paint=palette.paint_sky,
-    floor=palette.carpet,
+    paint=palette.PAINT_SKY,
+    floor=palette.CARPET,
     lamps=((2.6, 6.6),),
     sides={
         1: Side(
@@ -83,55 +83,55 @@ BEDROOM = Room(
             hung=(Hung(1.95, 0.45, Radiator(1.1)),),
         ),
         2: Side(
-            paint=palette.paint_plaster,
-            stood=(Stood(0.95, 0.03, Bed(1.5, palette.beech, palette.green_fabric)),),
-            hung=(Hung(0.95, 1.6, Sheet(1.0, 0.6, palette.picture_cold, rim=WHITE)), Hung(3.0, 0.3, Socket(2))),
+            paint=palette.PAINT_PLASTER,
+            stood=(Stood(0.95, 0.03, Bed(1.5, palette.BEECH, palette.GREEN_FABRIC)),),
+            hung=(Hung(0.95, 1.6, Sheet(1.0, 0.6, palette.PICTURE_COLD, rim=WHITE)), Hung(3.0, 0.3, Socket(2))),
         ),
-        4: Side(stood=(Stood(3.35, 0.02, Wardrobe(1.8, 2.1, palette.white_furniture)),)),
+        4: Side(stood=(Stood(3.35, 0.02, Wardrobe(1.8, 2.1, palette.WHITE_FURNITURE)),)),
     },
-    lowered=(Lowered("lowered ceiling over the wardrobe", (-0.05, 4.93), (1.3, 9.63), 2.3, palette.paint_white),),
+    lowered=(Lowered("lowered ceiling over the wardrobe", (-0.05, 4.93), (1.3, 9.63), 2.3, palette.PAINT_WHITE),),
 )
 
 KITCHEN = Room(
     "kitchen",
     corners=((-4.12, 4.4), (-0.12, 4.4), (-0.12, 0.4), (-4.12, 0.4)),
     height=2.5,
-    paint=palette.paint_sand,
-    floor=palette.stone,
+    paint=palette.PAINT_SAND,
+    floor=palette.STONE,
     lamps=((-2.0, 2.4),),
     sides={
         1: Side(
-            paint=palette.wall_tiles,
-            stood=(Stood(1.35, 0.01, Kitchen(2.4, palette.white_furniture, palette.anthracite)),),
+            paint=palette.WALL_TILES,
+            stood=(Stood(1.35, 0.01, Kitchen(2.4, palette.WHITE_FURNITURE, palette.ANTHRACITE)),),
         ),
-        2: Side(hung=(Hung(0.6, 1.6, Sheet(0.4, 0.55, palette.picture_warm, rim=BLACK)), Hung(3.5, 1.1, Socket()))),
+        2: Side(hung=(Hung(0.6, 1.6, Sheet(0.4, 0.55, palette.PICTURE_WARM, rim=BLACK)), Hung(3.5, 1.1, Socket()))),
         3: Side(
-            stood=(Stood(2.95, 0.03, Table(1.2, 0.7, 0.74, palette.beech, 6)),),
+            stood=(Stood(2.95, 0.03, Table(1.2, 0.7, 0.74, palette.BEECH, 6)),),
             hung=(Hung(0.7, 2.0, Clock()),),
         ),
         4: Side(windows=(WindowPlan(1.2, 1.4, _SILL, _PANES, WHITE),), hung=(Hung(1.9, 0.45, Radiator(1.2)),)),
     },
-    standing=(Standing((-3.07, 1.62), 0.0, Chair(palette.blue_fabric)),),
+    standing=(Standing((-3.07, 1.62), 0.0, Chair(palette.BLUE_FABRIC)),),
 )
 
 STORE = Room(
     "store",
     corners=((1.0, -0.12), (3.0, -0.12), (3.0, -1.72), (1.0, -1.72)),
     height=2.5,
-    paint=palette.paint_white,
-    floor=palette.stone,
+    paint=palette.PAINT_WHITE,
+    floor=palette.STONE,
     sides={
         3: Side(
             stood=(
                 Stood(0.55, 0.03, Boxes(0.8, 1.5, 7)),
-                Stood(1.5, 0.03, Shelf(0.8, 1.8, 0.35, palette.white_furniture, 8)),
+                Stood(1.5, 0.03, Shelf(0.8, 1.8, 0.35, palette.WHITE_FURNITURE, 8)),
             )
         )
     },
 )
 
 _PLAIN = DoorPlan(
-    left=0.0, width=0.9, height=2.05, finish=palette.door_white, frame=ARCHITRAVE, recess=0.0, opens="outward"
+    left=0.0, width=0.9, height=2.05, finish=palette.DOOR_WHITE, frame=ARCHITRAVE, recess=0.0, opens="outward"
 )
 DOORS = (
     Doorway(
@@ -139,7 +139,7 @@ DOORS = (
         "living",
         5,
         replace(
-            _PLAIN, left=1.95, width=0.95, finish=palette.oak, hinge="left", opens="inward", openings=(np.radians(95),)
+            _PLAIN, left=1.95, width=0.95, finish=palette.OAK, hinge="left", opens="inward", openings=(np.radians(95),)
         ),
     ),
     Doorway(
@@ -150,7 +150,7 @@ DOORS = (
             _PLAIN,
             left=2.9,
             width=0.9,
-            finish=palette.door_blue,
+            finish=palette.DOOR_BLUE,
             hinge="left",
             opens="inward",
             openings=(np.radians(100),),
@@ -180,8 +180,8 @@ FLAT = House(
     starts=(Start("start", (1.7, 2.4), 90.0),),
     outer=0.24,
     outside=(
-        Standing((14.5, 2.0), 90.0, Hedge(9.0, 2.2, 0.6, palette.hedge)),
-        Standing((2.0, 16.0), 180.0, Hedge(8.0, 3.2, 0.3, palette.brickwork)),
-        Standing((-10.5, 2.0), -90.0, Hedge(7.0, 1.4, 0.6, palette.hedge)),
+        Standing((14.5, 2.0), 90.0, Hedge(9.0, 2.2, 0.6, palette.HEDGE)),
+        Standing((2.0, 16.0), 180.0, Hedge(8.0, 3.2, 0.3, palette.BRICKWORK)),
+        Standing((-10.5, 2.0), -90.0, Hedge(7.0, 1.4, 0.6, palette.HEDGE)),
     ),
 )

@@ -37,6 +37,8 @@ _SLAB = 0.1
 _BOX_SPAN = 2.0
 """A box is two units wide to MuJoCo's textures, whatever its size: they repeat so many times half as often."""
 _CEILING = Named((0.93, 0.93, 0.92), name="ceiling", specular=0.01, roughness=0.9)
+_CONCRETE = Named((0.55, 0.55, 0.54), name="concrete", specular=0.0, roughness=1.0)
+"""Under the floors, as it shows at the foot of walls."""
 _LAWN = Named((0.33, 0.42, 0.25), name="lawn", specular=0.0, roughness=1.0)
 _LAMP = Named((0.97, 0.95, 0.88), name="lamp")
 
@@ -104,13 +106,8 @@ def _add_ground(pen: Pen, building: Node, house: House) -> None:
     building.comment(
         "What everything stands on, and the lawn around; the rooms' own floors lie half a millimetre higher"
     )
-    pen.box(building, (*low, -0.2), (*high, -0.0005), pen_floor())
+    pen.box(building, (*low, -0.2), (*high, -0.0005), _CONCRETE)
     pen.box(building, (*(low - 12), -0.4), (*(high + 12), -0.2), _LAWN)
-
-
-def pen_floor() -> Finish:
-    """Concrete under the floors, as it shows at the foot of walls."""
-    return Named((0.55, 0.55, 0.54), name="concrete", specular=0.0, roughness=1.0)
 
 
 def _add_room(pen: Pen, building: Node, house: House, room: Room) -> None:
@@ -134,7 +131,7 @@ def _add_room(pen: Pen, building: Node, house: House, room: Room) -> None:
         body.comment(lowered.name)
         pen.box(body, (*lowered.lower, lowered.height), (*lowered.upper, room.height + _SLAB / 2), lowered.finish)
     for x, y in room.lamps:
-        pen.cylinder(body, (x, y, room.height - 0.35), (x, y, room.height), 0.008, pen_floor())
+        pen.cylinder(body, (x, y, room.height - 0.35), (x, y, room.height), 0.008, _CONCRETE)
         pen.ball(body, (x, y, room.height - 0.42), (0.18, 0.18, 0.08), _LAMP)
     for place in room.standing:
         pen.place(place.thing, body, (*place.at, 0.0), turned=np.radians(place.turned), owner=room.name)
