@@ -210,13 +210,22 @@ def strips(boxes: Boxes, scene: Scene, *, outside: bool) -> list[NDArray[np.int6
 
 
 def overshoot(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
-    """(N,) larger share of edges where the top is drawn out beyond its corners.
+    """(N,) larger share of edges where the top is drawn out beyond its corners; 1 where this cannot be seen.
 
-    The joints of tiles go on there, if faintly, and planks have none; the head of a door ends.
+    The joints of tiles go on there, if faintly, and planks have none; the head of a door ends. At the end of the wall
+    it ends, too.
     """
     reach = round(OVERSHOOT / scene.merged.pixel_size)
     top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
     level = scene.sums(cv2.dilate(scene.edges.faint_level.view(np.uint8), np.ones((3, 1), np.uint8)) > 0)
+    visible = scene.sums(scene.visible)
     clear = 1 + round(COLOUR_ALONG / 2 / scene.merged.pixel_size)  # so far an edge is smoothed beyond its end
-    beside = [[top, left - clear - reach, top + 1, left - clear], [top, right + clear, top + 1, right + clear + reach]]
-    return np.max([box_sums(level, np.stack(span, axis=1)) / reach for span in beside], axis=0)
+    beside = [(left - clear - reach, left - clear), (right + clear, right + clear + reach)]
+    worst = np.zeros(len(boxes))
+    for first, last in beside:
+        first, last = (np.clip(x, 0, scene.visible.shape[1]) for x in (first, last))
+        span = np.stack([top, first, top + 1, last], axis=1)
+        seen = box_sums(visible, span)
+        drawn = np.where(seen >= END_VISIBLE * (last - first), box_sums(level, span) / np.maximum(seen, 1), 1.0)
+        worst = np.maximum(worst, np.where(last - first < reach / 3, 0.0, drawn))
+    return worst

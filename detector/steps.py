@@ -25,6 +25,10 @@ SAME_COLOUR = 0.02
 """Colours closer than this in every channel are the same, of 1."""
 SAME_DEPTH = 0.006
 """Depths closer than this are the same [m]."""
+UNLIKE_COLOUR, UNLIKE_DEPTH = 0.1, 0.015
+"""Surfaces that differ by more are surely two, of 1 and [m]."""
+LITTLE = 0.05
+"""Share of a rectangle that says nothing of the rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +72,24 @@ def is_set_apart(box: Boxes, scene: Scene, *, boards: bool = True) -> bool:
         boards: False does not accept the last.
     """
     change = steps(box, scene)
-    return change.agree() or change.framed() or (boards and boarded(box, scene))
+    return (change.agree() and not holds_wall(box, scene)) or change.framed() or (boards and boarded(box, scene))
+
+
+def holds_wall(box: Boxes, scene: Scene) -> bool:
+    """Whether the wall area within one rectangle is another surface than the rest of it.
+
+    A door that the wall area has swallowed is all alike; between a screen and the sideboard below it there is wall.
+    """
+    inner = np.s_[int(box.top[0]) + 2 : scene.lowest_row : 2, int(box.left[0]) + 2 : int(box.right[0]) - 1 : 2]
+    depth = scene.merged.depth[inner]
+    known = scene.merged.coloured[inner] & scene.visible[inner] & np.isfinite(depth)
+    wall = known & scene.wall[inner]
+    rest = known & ~wall
+    if min(np.count_nonzero(wall), np.count_nonzero(rest)) < LITTLE * np.count_nonzero(known):
+        return False
+    colours = scene.merged.colour[inner]
+    colour = np.abs(median_colour(colours, wall) - median_colour(colours, rest)).max()
+    return bool(max(colour / UNLIKE_COLOUR, abs(np.median(depth[wall]) - np.median(depth[rest])) / UNLIKE_DEPTH) > 1)
 
 
 def boarded(box: Boxes, scene: Scene) -> bool:
