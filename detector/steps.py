@@ -28,7 +28,7 @@ SAME_DEPTH = 0.006
 UNLIKE_COLOUR, UNLIKE_DEPTH = 0.1, 0.015
 """Surfaces that differ by more are surely two, of 1 and [m]."""
 LITTLE = 0.05
-"""Share of a rectangle that says nothing of the rest."""
+"""Least share of a rectangle that is a part of it, not the blur along its sides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,16 +76,17 @@ def is_set_apart(box: Boxes, scene: Scene, *, boards: bool = True) -> bool:
 
 
 def holds_wall(box: Boxes, scene: Scene) -> bool:
-    """Whether the wall area within one rectangle is another surface than the rest of it.
+    """Whether the wall area within one rectangle is the lesser part of it, and another surface than the rest.
 
-    A door that the wall area has swallowed is all alike; between a screen and the sideboard below it there is wall.
+    A door that the wall area has swallowed is wall but for its fittings; between a screen and the sideboard below it
+    there is wall.
     """
     inner = np.s_[int(box.top[0]) + 2 : scene.lowest_row : 2, int(box.left[0]) + 2 : int(box.right[0]) - 1 : 2]
     depth = scene.merged.depth[inner]
     known = scene.merged.coloured[inner] & scene.visible[inner] & np.isfinite(depth)
     wall = known & scene.wall[inner]
     rest = known & ~wall
-    if min(np.count_nonzero(wall), np.count_nonzero(rest)) < LITTLE * np.count_nonzero(known):
+    if not LITTLE < np.count_nonzero(wall) / max(np.count_nonzero(known), 1) < 0.5:
         return False
     colours = scene.merged.colour[inner]
     colour = np.abs(median_colour(colours, wall) - median_colour(colours, rest)).max()
