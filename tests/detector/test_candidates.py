@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,6 +51,14 @@ def test_a_top_that_ends_before_the_sides_is_that_of_a_pane() -> None:
 def test_the_head_of_a_door_ends_at_its_corners_and_a_joint_of_tiles_goes_on() -> None:
     np.testing.assert_allclose(overshoot(DOOR, scene((LEFT, RIGHT, TOP))), [0.0])
     np.testing.assert_allclose(overshoot(DOOR, scene((LEFT, RIGHT, np.s_[60, :]))), [1.0])
+
+
+def test_a_head_that_has_an_end_behind_furniture_is_not_seen_to_end() -> None:
+    head = scene((LEFT, RIGHT, TOP))
+    beside_right = np.ones(SHAPE, bool)
+    beside_right[:, 191:] = False
+
+    np.testing.assert_allclose(overshoot(DOOR, replace(head, visible=beside_right)), [1.0])
 
 
 def test_boards_differ_from_one_to_the_next_and_tiles_in_both_directions() -> None:

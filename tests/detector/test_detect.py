@@ -191,6 +191,15 @@ def test_a_panel_that_hangs_a_hand_above_the_floor_is_no_door(gap: float, count:
     assert len(doors) == count
 
 
+@pytest.mark.parametrize(("bottom", "count"), [(0.0, 1), (1.15, 0)])
+def test_a_picture_over_a_sofa_is_no_door_and_a_panel_behind_one_is(bottom: float, count: int) -> None:
+    # 1.2 m wide, up to 1.95 m; between the picture and the sofa, 0.8 m high, wall shows
+    panel = Box((3.0, (bottom + 1.95) / 2, 0.005), (0.6, (1.95 - bottom) / 2, 0.005), (0.2, 0.2, 0.22))
+    sofa = Box((3.0, 0.4, 0.5), (1.0, 0.4, 0.45), (0.6, 0.2, 0.2))
+    doors = detect_doors(make_room(Layout(extra=[panel, sofa]), step_deg=STEP_DEG), COARSE)[0].doors
+    assert len(doors) == count
+
+
 def test_two_doors_with_a_pillar_of_wall_between_are_two() -> None:
     specs = [DoorSpec(left=2.0, width=0.85, frame=0.04), DoorSpec(left=3.05, width=0.85, frame=0.04)]
     result = detect_doors(make_room(Layout(doors=specs), step_deg=STEP_DEG), COARSE)[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -140,8 +141,13 @@ class House:
         """The room of that name."""
         return next(room for room in self.rooms if room.name == name)
 
+    @cached_property
+    def edges(self) -> tuple[Edge, ...]:
+        """The walls' faces of all rooms."""
+        return tuple(edge for room in self.rooms for edge in edges(room))
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False)
 class Edge:
     """A wall's face in plan."""
 
@@ -151,16 +157,16 @@ class Edge:
     """(2,) its left end seen from inside [m]."""
     end: Floats
 
-    @property
+    @cached_property
     def length(self) -> float:
         return float(np.linalg.norm(self.end - self.start))
 
-    @property
+    @cached_property
     def along(self) -> Floats:
         """(2,) unit vector to the right."""
         return np.asarray((self.end - self.start) / self.length)
 
-    @property
+    @cached_property
     def outward(self) -> Floats:
         """(2,) unit vector into the wall."""
         return np.array([-self.along[1], self.along[0]])
@@ -184,15 +190,14 @@ def behind(house: House, edge: Edge) -> list[tuple[Edge, float, float]]:
     A point x along the one face is at shift - x along the other.
     """
     found = []
-    for room in house.rooms:
-        if room.name == edge.room:
+    for other in house.edges:
+        if other.room == edge.room or other.along @ edge.along > -1 + 1e-6:
             continue
-        for other in edges(room):
-            thickness = float((other.start - edge.start) @ edge.outward)
-            shift = float((other.start - edge.start) @ edge.along)
-            overlap = min(edge.length, shift) - max(0.0, shift - other.length)
-            if other.along @ edge.along < -1 + 1e-6 and 0.02 < thickness < _PARTY and overlap > 0.01:
-                found.append((other, thickness, shift))
+        thickness = float((other.start - edge.start) @ edge.outward)
+        shift = float((other.start - edge.start) @ edge.along)
+        overlap = min(edge.length, shift) - max(0.0, shift - other.length)
+        if 0.02 < thickness < _PARTY and overlap > 0.01:
+            found.append((other, thickness, shift))
     return found
 
 
