@@ -38,7 +38,9 @@ FAIRLY_SET = 0.5
 OPEN_SHARE = 0.15
 """A rectangle that is looked through over more than this share is open."""
 CLEAR_SUPPORT = 0.8
-"""Support of every side and foot of an outline that cuts a rectangle out of a wall of its own colour."""
+"""Support of every side of an outline that cuts a rectangle out of a wall of its own colour."""
+CLEAR_FOOT = 0.6
+"""Likewise of each foot: a skirting or a threshold takes a hand's breadth of it."""
 MAX_OVERSHOOT = 0.5
 ENDS = 0.2
 """The head of a door of boards among boards is all there is to tell it from them: it must end, within this."""
@@ -181,7 +183,7 @@ def _stand_alone(
     Args:
         in_wall: (N,) whether they hold wall area, so that their surface must be told from it.
     """
-    closed = (support.min(axis=1) > CLEAR_SUPPORT) & (feet.min(axis=1) > CLEAR_SUPPORT)
+    closed = (support.min(axis=1) > CLEAR_SUPPORT) & (feet.min(axis=1) > CLEAR_FOOT)
     closed &= boxes.top * scene.merged.pixel_size > OVERSHOOT  # a plank goes up to the ceiling
     beyond = np.ones(len(boxes))
     beyond[closed] = overshoot(boxes[closed], scene)
