@@ -35,6 +35,7 @@ from mission.samples import ScanSample, place, sample_scan
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
 from mission.voxels import VoxelModel
+from sim.hokuyo import LaserScan
 from sim.scanner import Scan
 from sim.scene import Scene
 
@@ -114,6 +115,7 @@ class Surveyor:
         with self._stopwatch("drive"):
             drove = self._drove(room, path, floor_height)
         yield drove
+        yield from self._news()
         return bool(drove.arrived)
 
     def _scan_here(self, room: ExploredRoom, *, photograph: bool) -> Iterator[Event]:
@@ -139,7 +141,13 @@ class Surveyor:
             scan = self._mopad.scan()
         truth = self._mopad.true_world_from_scanner
         yield self.event(Scanned, scan_number=self._scans, scan=scan, true_world_from_scanner=truth)
+        yield from self._news()
         return scan
+
+    def _news(self) -> Iterator[Event]:
+        """What was put in the way since the last time."""
+        while self._mopad.news:
+            yield self.remark(self._mopad.news.pop(0))
 
     def _register(self, room: ExploredRoom, scan: Scan) -> Generator[Event, None, tuple[ScanSample, Registration]]:
         """Find where in a room a scan was taken, and believe it."""
@@ -212,11 +220,15 @@ class Surveyor:
             truth.append(mopad.robot.true_world_from_base)
             angles.append([opening(door) for door in self._scene.true_doors()])
 
+        def measure() -> list[LaserScan]:
+            mopad.meet_obstacles(driving=True)
+            return mopad.measure_lasers()
+
         laser_map = room.laser_map(floor_height + mopad.robot.base_from_lasers[0][2, 3])
         leg = drive(
             mopad.robot,
             path,
-            mopad.measure_lasers,
+            measure,
             world_from_odometry=mopad.world_from_odometry,
             footprint=room.footprint,
             parameters=navigation.driving,
