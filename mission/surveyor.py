@@ -236,8 +236,11 @@ class Surveyor:
             watch=watch,
         )
         mopad.believe(leg.world_from_base[-1])
-        if not leg.arrived:  # what stopped it must be on the map; after an arrival the next scan tells more
-            room.lasers += zip(leg.laser_scans, leg.world_from_base_at_laser, strict=True)
+        readings = list(zip(leg.laser_scans, leg.world_from_base_at_laser, strict=True))
+        if leg.arrived:  # the next scan will tell more of what is near
+            room.passing += readings
+        else:  # what stopped it must be on the map
+            room.lasers += readings
             self._look_around(room)
         drove: Drove = self.event(
             Drove,
