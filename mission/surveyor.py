@@ -112,11 +112,15 @@ class Surveyor:
         Returns:
             Whether the robot arrived.
         """
+        leg = yield from self._leg(room, path, floor_height)
+        return bool(leg.arrived)
+
+    def _leg(self, room: ExploredRoom, path: NDArray[np.float64], floor_height: float) -> Generator[Event, None, Drove]:
         with self._stopwatch("drive"):
             drove = self._drove(room, path, floor_height)
         yield drove
         yield from self._news()
-        return bool(drove.arrived)
+        return drove
 
     def _scan_here(self, room: ExploredRoom, *, photograph: bool) -> Iterator[Event]:
         """Scan, photograph, register and colour at the present pose."""
@@ -185,12 +189,12 @@ class Surveyor:
         return structure, voxels
 
     def _move_on(self, room: ExploredRoom, structure: Structure, voxels: VoxelModel) -> Generator[Event, None, bool]:
-        """Choose the next best scan and drive there; a way that ends early leads to a new plan.
+        """Choose where to scan next and drive there; a blocked way leads to a new plan, to be stuck ends the room.
 
         Returns:
             Whether the robot stands where it is to scan next; if not, the room is complete.
         """
-        mopad = self._mopad
+        mopad, reason = self._mopad, NO_ARRIVAL
         for _ in range(MAX_DETOURS):
             with self._stopwatch("plan"):
                 grid = room.grid(structure.floor_height)
@@ -205,9 +209,13 @@ class Surveyor:
             yield self.event(Planned, scan_number=self._scans, plan=plan, grid=grid)
             if plan.path is None:
                 return False
-            if (yield from self.drive(room, plan.path, structure.floor_height)):
+            leg = yield from self._leg(room, plan.path, structure.floor_height)
+            if leg.arrived:
                 return True
-        stopped = replace(plan, chosen=None, path=None, stop_reason=NO_ARRIVAL)
+            if leg.outcome == "stuck":
+                reason = f"stuck for {self._config.navigation.driving.patience:g} s"
+                break
+        stopped = replace(plan, chosen=None, path=None, stop_reason=reason)
         yield self.event(Planned, scan_number=self._scans, plan=stopped, grid=grid)
         return False
 
