@@ -11,6 +11,7 @@ EXAMPLES = """\
 examples:
   python -m mission run room.xml
   python -m mission run room.xml --door study_door=40 --seed 3 --out runs/try
+  python -m mission run room.xml --obstacle=-1.5,-0.5 --obstacle 1,1.2,200
   python -m mission run my_flat.xml --set scanner.pattern=draft --max-scans 2
   python -m mission run room.xml --fail-under recall=0.97 --json > result.json
 then:
@@ -117,6 +118,14 @@ def parser() -> argparse.ArgumentParser:
         default=[],
         metavar="NAME=DEG",
         help="open a door of the scene to an angle from closed; a wrong NAME lists the right ones; may be repeated",
+    )
+    run.add_argument(
+        "--obstacle",
+        action="append",
+        default=[],
+        metavar="X,Y[,SECONDS]",
+        help="put a box of 0.4 x 0.4 x 0.8 m there during the run: at a mission time, or else as the robot sets off, "
+        "but never on the robot; --obstacle=-1,2 where X is negative; may be repeated",
     )
     run.add_argument("--keyframe", metavar="NAME", help="start from a keyframe of the scene (default: the first)")
     run.add_argument("--max-scans", type=_positive, metavar="N", help="at most so many scans a room")

@@ -25,7 +25,7 @@ class PlanningParameters(Parameters):
     min_value: float = Field(default=0.5, ge=0.0, le=100.0, description="A scan must be worth so much [m2]")
     min_separation: float = Field(default=0.5, ge=0.0, le=5.0, description="From the places scanned before [m]")
     min_overlap: float = Field(default=0.3, ge=0.0, le=1.0, description="Known share of what is seen, for registration")
-    travel_cost: float = Field(default=0.05, ge=0.0, le=5.0, description="Decay of the value with the way [1/m]")
+    travel_cost: float = Field(default=0.025, ge=0.0, le=5.0, description="Decay of the value with the way [1/m]")
     quality_weight: float = Field(default=0.15, ge=0.0, le=10.0, description="Of wall area seen only obliquely so far")
     doorway_weight: float = Field(default=0.5, ge=0.0, le=10.0, description="Of doorway area seen from a new side")
     frontier_length: float = Field(

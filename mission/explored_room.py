@@ -42,6 +42,8 @@ class ExploredRoom:
     """(3,) where scans were taken that could not be registered [m]."""
     lasers: list[tuple[LaserScan, Pose]] = field(default_factory=list)
     """Hokuyo scans with the pose of the base."""
+    passing: list[tuple[LaserScan, Pose]] = field(default_factory=list)
+    """Those taken under way on legs that ended as planned."""
     robot_poses: list[Pose] = field(default_factory=list)
     """Where the robot has stood."""
 
@@ -74,6 +76,7 @@ class ExploredRoom:
             self._scanners_in_world,
             floor_height=floor_height,
             lasers=self.lasers,
+            passing=self.passing,
             robot_poses=self.robot_poses,
             footprint=self.footprint,
             scanner=self.config.scanner,

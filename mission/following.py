@@ -32,7 +32,10 @@ class DrivingParameters(Parameters):
         default=0.8, ge=0.0, le=5.0, description="The body's next moves must be free for so long [s]"
     )
     guard: float = Field(
-        default=0.03, ge=0.0, le=0.5, description="Readings may not come closer to the body than this [m]"
+        default=0.04,
+        ge=0.0,
+        le=0.5,
+        description="Readings may not come closer to the body than this [m]: with their noise, 5 cm stay clear",
     )
     readings: int = Field(
         default=2, ge=1, le=50, description="So many within the guard are an obstacle; fewer are noise"

@@ -56,6 +56,12 @@ class GridParameters(Parameters):
     laser_hit_range: float = Field(
         default=2.5, ge=0.5, le=4.0, description="Hokuyo hits count up to here [m]; 1 % noise beyond blurs walls"
     )
+    news_from: float = Field(
+        default=0.15,
+        ge=0.0,
+        le=1.0,
+        description="So far from what is known, a hit under way is new [m]: the pose is off by centimetres there",
+    )
     laser_free_range: float = Field(
         default=2.0,
         ge=0.5,
@@ -146,6 +152,7 @@ def grid_from_scans(
     floor_height: float,
     footprint: Footprint,
     lasers: Sequence[tuple[LaserScan, NDArray[np.float64]]] = (),
+    passing: Sequence[tuple[LaserScan, NDArray[np.float64]]] = (),
     robot_poses: Sequence[NDArray[np.float64]] = (),
     scanner: ScannerParameters | None = None,
     parameters: GridParameters | None = None,
@@ -160,6 +167,7 @@ def grid_from_scans(
         floor_height: World z of the floor [m].
         footprint: What the robot covers where it has stood.
         lasers: Hokuyo scans, each with the (4, 4) world_from_base at which it was taken.
+        passing: Hokuyo scans taken under way: they tell of what is new in the room, and nothing else.
         robot_poses: (4, 4) world_from_base at which the robot has stood.
         scanner: What took the scans: its field of view and minimum range leave a disc around it blind.
     """
@@ -176,6 +184,7 @@ def grid_from_scans(
     grid = replace(grid, cells=seen)
     for scan, world_from_base in lasers:
         grid = with_laser(grid, scan, world_from_base, parameters=parameters)
+    grid = _with_news(grid, passing, parameters)
     cells = grid.cells.copy()
     for origin in np.asarray(scanners_in_world, dtype=np.float64):
         cells[_shadowed(grid, floor, origin, floor_height, scanner) & (cells == Cell.FREE)] = Cell.UNKNOWN
@@ -215,6 +224,24 @@ def with_laser(
     flat[free[flat[free] == Cell.UNKNOWN]] = Cell.FREE
     row, column, inside = grid.indices(hits_in_world)
     cells[row[inside], column[inside]] = Cell.OCCUPIED
+    return replace(grid, cells=cells)
+
+
+def _with_news(
+    grid: OccupancyGrid, passing: Sequence[tuple[LaserScan, NDArray[np.float64]]], parameters: GridParameters
+) -> OccupancyGrid:
+    """Add hits that are too far from all that is known to be that, put a little aside by a moving robot's pose.
+
+    What the beams crossed is not made free: a table's top stands above their plane.
+    """
+    distance = cv2.distanceTransform((grid.cells != Cell.OCCUPIED).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    new = distance * grid.resolution > parameters.news_from
+    cells = grid.cells.copy()
+    for scan, world_from_base in passing:
+        hits = transformed(scan.points_in_base(up_to=parameters.laser_hit_range), world_from_base)
+        row, column, inside = grid.indices(hits)
+        row, column = row[inside], column[inside]
+        cells[row[new[row, column]], column[new[row, column]]] = Cell.OCCUPIED
     return replace(grid, cells=cells)
 
 

@@ -46,6 +46,8 @@ class Mopad:
         self._operator_rng = operator
         self.world_from_odometry: Pose = np.eye(4)
         """What registration and localisation correct the odometry by."""
+        self.news: list[str] = []
+        """What was put in the robot's way, in words, for the record: it does not know."""
         with ExitStack() as stack:  # what fails from here on closes the renderer
             renderer = stack.enter_context(Renderer(scene.model, hidden_bodies=scene.robot_bodies))
             self._scanner, self._scanner_rng = Scanner(renderer, config.scanner), scanner
@@ -90,6 +92,7 @@ class Mopad:
 
     def scan(self) -> Scan:
         """One panorama; takes the time that the VZ-400 needs."""
+        self.meet_obstacles(driving=False)
         scan = self._scanner.scan(self._scene.data, self.true_world_from_scanner, self._scanner_rng)
         self.robot.wait(scan.duration)
         return scan
@@ -99,6 +102,13 @@ class Mopad:
         photos = self._camera.photograph(self._scene.data, self.true_world_from_scanner, self._camera_rng)
         self.robot.wait(SECONDS_PER_PHOTO * len(photos))
         return photos
+
+    def meet_obstacles(self, *, driving: bool) -> None:
+        """Let what is due get in the way."""
+        robot = self.robot
+        self.news += self._scene.obstacles.put_down(
+            robot.time, robot.true_world_from_base, footprint=robot.footprint, driving=driving
+        )
 
     def measure_lasers(self) -> list[LaserScan]:
         """One sweep of each Hokuyo."""

@@ -105,7 +105,8 @@ def road_map(
     """Find the turning points and the ways to them.
 
     If the robot cannot turn where it stands, it first moves straight ahead or back to the nearest spot where it can;
-    failing that it turns in place, provided that nothing known stands in its disc.
+    failing that it turns in place, provided that nothing known stands in its disc; failing that it moves straight past
+    what is unknown in its disc.
 
     Args:
         world_from_base: (4, 4) pose of the robot.
@@ -123,6 +124,8 @@ def road_map(
     if not turns_at_start and len(escape) == 0:
         grid = _trusting(grid, start, turning)
         turns_at_start = bool(grid.clearance_at(start) >= turning)
+        if not turns_at_start:
+            escape = _way_out(grid, world_from_base, footprint, parameters)
     raster = _roomiest_points(grid, parameters.spacing, turning)
     if within is not None:
         raster = raster[within_polygon(raster, within)]

@@ -21,7 +21,7 @@ from sim.scanner import ScannerParameters
 _LEVELS = 4
 """Depth maps, each with bins twice as wide as the last one's."""
 _TOUCH = 0.15
-"""What is hit within this distance of a cell does not hide it [m]: a cube and a half, for the edges of both."""
+"""What is hit within this distance of a cell does not hide it [m]: for the edges of voxels and cubes."""
 _WALL_TOUCH = 0.3
 """Likewise for the sides of the room [m]: polygon and walls may differ by centimetres, met at a grazing angle."""
 _DIAGONAL = 1.5
@@ -35,8 +35,8 @@ class ScannerView(Parameters):
     max_incidence: float = Field(
         default=math.radians(75), gt=0.0, lt=math.pi / 2, description="Flatter beams see little [rad]"
     )
-    cube: float = Field(default=0.1, ge=0.02, le=0.5, description="Side of the cubes that points stand for [m]")
-    bin_width: float = Field(default=math.radians(1.5), ge=0.003, le=0.1, description="Of the finest depth map [rad]")
+    cube: float = Field(default=0.05, ge=0.02, le=0.5, description="Side of the cubes that points stand for [m]")
+    bin_width: float = Field(default=math.radians(0.75), ge=0.003, le=0.1, description="Of the finest depth map [rad]")
 
 
 @dataclass(frozen=True, eq=False)

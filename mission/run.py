@@ -29,6 +29,7 @@ from mission.report import Report, write_json
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
 from sim.errors import SimError
+from sim.obstacles import Obstacle
 from sim.scene import load_scene
 
 logger = logging.getLogger(__name__)
@@ -55,7 +56,10 @@ def run(options: argparse.Namespace) -> int:
         _check_metrics(bars)
         config = read_config(options.config, [*options.set, *_shorthands(options)])
         angles = {name: math.radians(angle) for name, angle in (_setting("--door", text) for text in options.door)}
-        scene = load_scene(find_scene(options.scene), door_angles=angles, keyframe=options.keyframe)
+        obstacles = [_obstacle(text) for text in options.obstacle]
+        scene = load_scene(
+            find_scene(options.scene), door_angles=angles, keyframe=options.keyframe, obstacles=obstacles
+        )
         progress = TerminalProgress(console)
         stopwatch = Stopwatch(progress.stage)
         with Mission(scene, config, seed=options.seed, stopwatch=stopwatch) as mission:
@@ -222,6 +226,16 @@ def _setting(option: str, text: str) -> tuple[str, float]:
     if not equals or not name or not math.isfinite(number):
         raise UsageError(f"{option} {text}: expected NAME=NUMBER")
     return name, number
+
+
+def _obstacle(text: str) -> Obstacle:
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in {2, 3} or not all(map(math.isfinite, numbers)) or (len(numbers) == 3 and numbers[2] < 0):
+        raise UsageError(f"--obstacle {text}: expected X,Y in metres, or X,Y,SECONDS from the start")
+    return Obstacle(*numbers)
 
 
 def _check_metrics(bars: Mapping[str, float]) -> None:

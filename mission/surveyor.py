@@ -35,6 +35,7 @@ from mission.samples import ScanSample, place, sample_scan
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
 from mission.voxels import VoxelModel
+from sim.hokuyo import LaserScan
 from sim.scanner import Scan
 from sim.scene import Scene
 
@@ -111,10 +112,15 @@ class Surveyor:
         Returns:
             Whether the robot arrived.
         """
+        leg = yield from self._leg(room, path, floor_height)
+        return bool(leg.arrived)
+
+    def _leg(self, room: ExploredRoom, path: NDArray[np.float64], floor_height: float) -> Generator[Event, None, Drove]:
         with self._stopwatch("drive"):
             drove = self._drove(room, path, floor_height)
         yield drove
-        return bool(drove.arrived)
+        yield from self._news()
+        return drove
 
     def _scan_here(self, room: ExploredRoom, *, photograph: bool) -> Iterator[Event]:
         """Scan, photograph, register and colour at the present pose."""
@@ -139,7 +145,13 @@ class Surveyor:
             scan = self._mopad.scan()
         truth = self._mopad.true_world_from_scanner
         yield self.event(Scanned, scan_number=self._scans, scan=scan, true_world_from_scanner=truth)
+        yield from self._news()
         return scan
+
+    def _news(self) -> Iterator[Event]:
+        """What was put in the way since the last time."""
+        while self._mopad.news:
+            yield self.remark(self._mopad.news.pop(0))
 
     def _register(self, room: ExploredRoom, scan: Scan) -> Generator[Event, None, tuple[ScanSample, Registration]]:
         """Find where in a room a scan was taken, and believe it."""
@@ -177,12 +189,12 @@ class Surveyor:
         return structure, voxels
 
     def _move_on(self, room: ExploredRoom, structure: Structure, voxels: VoxelModel) -> Generator[Event, None, bool]:
-        """Choose the next best scan and drive there; a way that ends early leads to a new plan.
+        """Choose where to scan next and drive there; a blocked way leads to a new plan, to be stuck ends the room.
 
         Returns:
             Whether the robot stands where it is to scan next; if not, the room is complete.
         """
-        mopad = self._mopad
+        mopad, reason = self._mopad, NO_ARRIVAL
         for _ in range(MAX_DETOURS):
             with self._stopwatch("plan"):
                 grid = room.grid(structure.floor_height)
@@ -197,9 +209,13 @@ class Surveyor:
             yield self.event(Planned, scan_number=self._scans, plan=plan, grid=grid)
             if plan.path is None:
                 return False
-            if (yield from self.drive(room, plan.path, structure.floor_height)):
+            leg = yield from self._leg(room, plan.path, structure.floor_height)
+            if leg.arrived:
                 return True
-        stopped = replace(plan, chosen=None, path=None, stop_reason=NO_ARRIVAL)
+            if leg.outcome == "stuck":
+                reason = f"stuck for {self._config.navigation.driving.patience:g} s"
+                break
+        stopped = replace(plan, chosen=None, path=None, stop_reason=reason)
         yield self.event(Planned, scan_number=self._scans, plan=stopped, grid=grid)
         return False
 
@@ -212,11 +228,15 @@ class Surveyor:
             truth.append(mopad.robot.true_world_from_base)
             angles.append([opening(door) for door in self._scene.true_doors()])
 
+        def measure() -> list[LaserScan]:
+            mopad.meet_obstacles(driving=True)
+            return mopad.measure_lasers()
+
         laser_map = room.laser_map(floor_height + mopad.robot.base_from_lasers[0][2, 3])
         leg = drive(
             mopad.robot,
             path,
-            mopad.measure_lasers,
+            measure,
             world_from_odometry=mopad.world_from_odometry,
             footprint=room.footprint,
             parameters=navigation.driving,
@@ -224,8 +244,11 @@ class Surveyor:
             watch=watch,
         )
         mopad.believe(leg.world_from_base[-1])
-        if not leg.arrived:  # what stopped it must be on the map; after an arrival the next scan tells more
-            room.lasers += zip(leg.laser_scans, leg.world_from_base_at_laser, strict=True)
+        readings = list(zip(leg.laser_scans, leg.world_from_base_at_laser, strict=True))
+        if leg.arrived:  # the next scan will tell more of what is near
+            room.passing += readings
+        else:  # what stopped it must be on the map
+            room.lasers += readings
             self._look_around(room)
         drove: Drove = self.event(
             Drove,

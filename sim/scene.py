@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +14,7 @@ import assets
 from sim.doors import Door, DoorTruth, find_doors, measure_door, put_doors
 from sim.errors import SimError
 from sim.leaves import bodies_below
+from sim.obstacles import Obstacle, Obstacles, add_obstacles, obstacle_bodies
 from sim.rays import Rays, geom_name
 from sim.start import freest_spot, pose_on_floor, require_surroundings, set_down_poses
 
@@ -58,13 +59,21 @@ class Scene:
     """Ids of the robot's bodies: its own sensors do not see them."""
     robot_prefix: str
     """What the names of the robot's bodies, joints, sites and actuators begin with."""
+    obstacles: Obstacles
+    """What will get in the robot's way."""
 
     def true_doors(self) -> tuple[DoorTruth, ...]:
         """The doors as they stand now: the truth, for the evaluation only."""
         return tuple(measure_door(self.model, self.data, door) for door in self.doors)
 
 
-def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, keyframe: str | None = None) -> Scene:
+def load_scene(
+    path: Path,
+    *,
+    door_angles: Mapping[str, float] | None = None,
+    keyframe: str | None = None,
+    obstacles: Sequence[Obstacle] = (),
+) -> Scene:
     """Load any MJCF, put MoPAD into it and set the doors.
 
     The state is the keyframe's of that name, else the first keyframe, else qpos0. MoPAD starts at a site named
@@ -79,15 +88,18 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
         path: the MJCF file.
         door_angles: opening of doors from closed [rad], by the name of the leaf's joint or body.
         keyframe: name of the keyframe to start from.
+        obstacles: what is put in the robot's way later on.
 
     Raises:
-        SimError: one line that says what is wrong with the scene, the keyframe, the doors or the start, and where.
+        SimError: one line that says what is wrong with the scene, the keyframe, the doors, the start or an obstacle,
+            and where.
     """
     mujoco.set_mju_user_warning(_warn)  # MuJoCo's own way is a file in the user's folder
     spec = _read(path)
     held = _robot_prefix(spec)
     prefix = _attach_robot(spec) if held is None else held
     _make_drivable(spec, prefix)
+    add_obstacles(spec, obstacles)
 
     model = _compile(spec, path)
     data = mujoco.MjData(model)
@@ -96,7 +108,8 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
     put_doors(model, data, doors, door_angles or {})
     robot_bodies = bodies_below(model, model.body(f"{prefix}base").id)
     try:
-        pose = _start_pose(model, data, prefix, robot_bodies, held is not None)
+        parked = obstacle_bodies(model, obstacles)
+        pose = _start_pose(model, data, prefix, robot_bodies.union(parked), held is not None)
         set_base(model, data, prefix, pose)
         leaves = frozenset[int]().union(*(bodies_below(model, one.leaf.body) for door in doors for one in door.leaves))
         _free_from_hulls(model, data, robot_bodies | leaves)
@@ -104,9 +117,10 @@ def load_scene(path: Path, *, door_angles: Mapping[str, float] | None = None, ke
         _let_stand(model, data, robot_bodies, pose)
         _require_free(model, data, robot_bodies, pose)
         set_downs = set_down_poses(model, data, Rays(model, data, robot_bodies), FOOTPRINT)
+        coming = Obstacles(model, data, obstacles, floor_height=float(pose[2, 3]))
     except SimError as error:
         raise SimError(f"scene {path}: {error}") from None
-    return Scene(model, data, path.name, spec.to_xml(), doors, pose, set_downs, robot_bodies, prefix)
+    return Scene(model, data, path.name, spec.to_xml(), doors, pose, set_downs, robot_bodies, prefix, coming)
 
 
 def _warn(text: str) -> None:

@@ -59,6 +59,22 @@ def test_a_scene_that_does_not_exist_is_named_with_those_that_do(refused) -> Non
     assert "room.xml" in line
 
 
+@pytest.mark.parametrize("text", ["1", "1,x", "1,2,3,4", "1,2,-3", "1,nan", ""])
+def test_an_obstacle_that_is_no_place_is_refused(refused, text: str) -> None:
+    assert "X,Y" in refused("room.xml", f"--obstacle={text}")
+
+
+def test_an_obstacle_in_a_wall_is_refused(refused) -> None:
+    assert "(3.25, -1.50)" in refused("room.xml", "--obstacle=3.25,-1.5")
+
+
+def test_a_planner_that_there_is_not_is_refused_with_those_there_are(capsys) -> None:
+    with pytest.raises(SystemExit) as exit:
+        main(["run", "room.xml", "--planner", "best"])
+    assert exit.value.code == 2
+    assert "frontier" in capsys.readouterr().err
+
+
 def test_a_scene_that_is_not_xml_is_refused(refused, scene) -> None:
     assert "scene.xml" in refused(scene("not xml at all"))
 

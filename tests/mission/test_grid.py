@@ -130,3 +130,17 @@ def test_the_cells_under_the_robot_are_those_of_its_own_outline() -> None:
 def test_nobody_assumes_a_footprint() -> None:
     with pytest.raises(TypeError):
         Footprint()  # type: ignore[call-arg]
+
+
+def test_readings_under_way_tell_of_new_things_and_of_nothing_else() -> None:
+    floor, box = sheet((2, 4), (-1, 1), 0.0), sheet((3.5, 3.8), (-0.5, 0.5), 0.4)
+    seen = np.concatenate([floor, box])
+    # From (1.5, 0) the front Hokuyo is at x = 1.95. A chair stands at y = 0.7, and the box seems 8 cm nearer.
+    reading = laser_scan(pose(1.5, 0.0), [(2.6, 2.8, 0.6, 0.8), (3.42, 3.8, -0.5, 0.5)])
+    told = [(reading, pose(1.5, 0.0))]
+    grid = grid_from_scans(seen, SCANNER, floor_height=0.0, footprint=FOOTPRINT, passing=told)
+    assert state(grid, 2.625, 0.65) == Cell.OCCUPIED  # its near side
+    assert state(grid, 3.425, 0.0) == Cell.FREE  # the scan knows better where the box is
+    assert state(grid, 1.6, 0.8) == Cell.UNKNOWN  # crossed at the height of the Hokuyo only
+    still = grid_from_scans(seen, SCANNER, floor_height=0.0, footprint=FOOTPRINT, lasers=told)
+    assert state(still, 3.425, 0.0) == Cell.OCCUPIED

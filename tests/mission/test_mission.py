@@ -83,14 +83,35 @@ def test_a_room_with_three_walls_no_ceiling_and_no_door_is_a_success(tmp_path: P
     assert printed["summary"]["metrics"]["doors"] == 0
 
 
-def test_a_robot_that_never_arrives_ends_the_room_and_says_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def blocked(*arguments: Any, **keywords: Any) -> Drive:
-        return replace(drive(*arguments, **keywords), outcome="blocked", reason="a box is in the way")
+@pytest.mark.parametrize(("outcome", "stop_reason"), [("blocked", NO_ARRIVAL), ("stuck", "stuck for 30 s")])
+def test_a_robot_that_never_arrives_ends_the_room_and_says_why(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Any, stop_reason: str
+) -> None:
+    legs = []
 
-    monkeypatch.setattr(mission.surveyor, "drive", blocked)
+    def ended(*arguments: Any, **keywords: Any) -> Drive:
+        legs.append(replace(drive(*arguments, **keywords), outcome=outcome, reason="a box is in the way"))
+        return legs[-1]
+
+    monkeypatch.setattr(mission.surveyor, "drive", ended)
     assert main(["run", "room.xml", *DRAFT, "--quiet", "--out", str(tmp_path)]) == 0
     (room,) = json.loads((tmp_path / "summary.json").read_text())["rooms"]
-    assert (room["scans"], room["stop_reason"]) == (1, NO_ARRIVAL)
+    assert (room["scans"], room["stop_reason"]) == (1, stop_reason)
+    assert len(legs) == (3 if outcome == "blocked" else 1)  # 30 s of patience are not spent again and again
+
+
+def test_a_box_that_is_put_in_the_way_is_driven_round_without_a_touch(tmp_path: Path) -> None:
+    # It stands beside the first leg's end, where the robot turns, and comes when that leg has begun.
+    obstacle = "--obstacle=-1.7,-0.6"
+    assert main(["run", "room.xml", *DRAFT, "--max-scans", "2", obstacle, "--quiet", "--out", str(tmp_path)]) == 0
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    (room,) = summary["rooms"]
+    assert (room["scans"], room["stop_reason"]) == (2, "scan limit")
+    with (tmp_path / "mission.mcap").open("rb") as file:
+        log = b"".join(message.data for _, _, message in make_reader(file).iter_messages())
+    assert b"an obstacle stands at (-1.70, -0.60)" in log
+    assert b"an obstacle 0.0" in log  # what stopped the robot
+    assert not summary["contacts"]
 
 
 def test_a_mission_below_the_bar_exits_with_1(tmp_path: Path, capsys) -> None:

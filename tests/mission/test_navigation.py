@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from mission.grid import Cell
 from mission.navigation import plan_path, road_map
 from tests.mission.driving_world import FOOTPRINT, body_gap, free_room, pose
 
@@ -79,3 +82,16 @@ def test_points_of_the_raster_stay_within_the_room_asked_for() -> None:
     half = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 4.0], [0.0, 4.0]])
     roads = road_map(free_room(6.0, 4.0), pose(1.5, 2.0), footprint=FOOTPRINT, within=half)
     assert roads.points[:, 0].max() < 3.0
+
+
+def test_backed_against_something_the_robot_leaves_straight_past_what_it_cannot_see_beside_itself() -> None:
+    # A box at the corner of its tail, 0.53 m from its middle, and unknown cells along both flanks, out of all sensors'
+    # view: no room to turn (0.57 m and the margin); half a metre ahead there is.
+    grid = free_room(6.0, 4.0, (1.0, 1.5, 1.3, 1.7))
+    c = grid.centres()
+    flanks = (abs(c[..., 0] - 2.2) < 0.15) & (abs(abs(c[..., 1] - 2.0) - 0.31) < 0.03)
+    grid = replace(grid, cells=np.where(flanks, np.uint8(Cell.UNKNOWN), grid.cells))
+    path = plan_path(grid, pose(2.0, 2.0, 0.0), np.array([4.5, 1.0]), footprint=FOOTPRINT)
+    assert path is not None
+    np.testing.assert_allclose(path[1, 1], 2.0, atol=1e-6)  # straight ahead first
+    assert 2.0 < path[1, 0] < 2.5

@@ -95,7 +95,7 @@ def test_each_candidate_is_credited_with_the_hidden_area_that_it_would_see() -> 
     candidates = plan(voxels, scanners=[(1.2, 3.0)], points=points, grid=grid).candidates
     exact = np.array([exact_gain(voxels, *c.position) for c in candidates])
     predicted = np.array([c.gain for c in candidates])
-    # The strip has 4.2 x 2.6 m = 10.9 m2; a bin of 1.5 deg is 0.1 m wide on it, the screen's cubes are 0.1 m.
+    # The strip has 4.2 x 2.6 m = 10.9 m2; a bin of 0.75 deg and the screen's cubes are 5 cm wide on it.
     assert np.quantile(abs(predicted - exact), 0.9) < 0.6
     assert exact.max() > 9.0 and exact.min() < 2.0  # they do differ
 

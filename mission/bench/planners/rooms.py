@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mission.rigid import Pose
 from sim.rays import Rays, horizontal
 from sim.scene import FOOTPRINT, Scene
-from sim.start import pose_on_floor, upright_pose
+from sim.start import upright_pose
 
 RASTER = 0.25
 """Places are this far apart [m]."""
@@ -59,24 +59,13 @@ def rooms_of(scene: Scene) -> list[TrueRoom]:
     """The rooms that the robot can get into: at the start, by sites `start_2`, `start_3`... and through open doors."""
     rays = Rays(*closed(scene), scene.robot_bodies)
     rooms: list[TrueRoom] = []
-    for pose in [scene.world_from_base, *_set_downs(scene, rays), *_entries(scene, rays)]:
+    for pose in [scene.world_from_base, *scene.set_downs, *_entries(scene, rays)]:
         known = [room.places_in_world for room in rooms]
         if any(np.hypot(*(places[:, :2] - pose[:2, 3]).T).min() < RASTER for places in known):
             continue
         places = _standing(rays, pose[:3, 3])
         rooms.append(TrueRoom(len(rooms) + 1, pose, places))
     return rooms
-
-
-def _set_downs(scene: Scene, rays: Rays) -> list[Pose]:
-    """Poses (4, 4) of the sites `start_2`, `start_3`..."""
-    poses = []
-    number = 2
-    while (site := mujoco.mj_name2id(scene.model, mujoco.mjtObj.mjOBJ_SITE, f"start_{number}")) >= 0:
-        heading = scene.data.site_xmat[site].reshape(3, 3)[:, 0]
-        poses.append(pose_on_floor(rays, scene.data.site_xpos[site], heading))
-        number += 1
-    return poses
 
 
 def _entries(scene: Scene, rays: Rays) -> list[Pose]:

@@ -26,7 +26,7 @@ CELL = 0.1
 SEEN_WITHIN = 0.07
 """From a cell's middle to the return that counts [m]: half the cell's diagonal."""
 APART = 1.5
-"""Between the places that are looked from [m]."""
+"""No place is farther than this from one that is looked from [m]."""
 
 _SAME = 0.01
 _AT_FLOOR = 0.03
@@ -81,7 +81,7 @@ def _seen_from(
         Renderer(scene.model, hidden_bodies=scene.robot_bodies) as opened,
         Renderer(shut_model, hidden_bodies=scene.robot_bodies) as shut,
     ):
-        for spot in room.places_in_world[thinned(room.places_in_world, APART, first=_all(room.places_in_world))]:
+        for spot in _spread(room.places_in_world):
             pose = np.eye(4)
             pose[:3, 3] = spot + base_from_scanner[:3, 3]
             scan = _scan(opened, exact, scene.data, pose)
@@ -92,6 +92,16 @@ def _seen_from(
             points.append(sample.points_in_world[flat].astype(np.float64))
             normals.append(sample.normals_in_world[flat].astype(np.float64))
     return np.concatenate(points), np.concatenate(normals)
+
+
+def _spread(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(S, 3) of the places (P, 3), each the one farthest from those before, until all have one within `APART`."""
+    chosen = [0]
+    distance = np.hypot(*(places - places[0]).T[:2])
+    while distance.max() > APART:
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.hypot(*(places - places[chosen[-1]]).T[:2]))
+    return places[chosen]
 
 
 def _scan(renderer: Renderer, parameters: ScannerParameters, data: mujoco.MjData, pose: Pose) -> Scan:
