@@ -89,8 +89,9 @@ def holds_wall(box: Boxes, scene: Scene) -> bool:
     if not LITTLE < np.count_nonzero(wall) / max(np.count_nonzero(known), 1) < 0.5:
         return False
     colours = scene.merged.colour[inner]
-    colour = np.abs(median_colour(colours, wall) - median_colour(colours, rest)).max()
-    return bool(max(colour / UNLIKE_COLOUR, abs(np.median(depth[wall]) - np.median(depth[rest])) / UNLIKE_DEPTH) > 1)
+    colour = float(np.abs(median_colour(colours, wall) - median_colour(colours, rest)).max())
+    step = abs(float(np.median(depth[wall])) - float(np.median(depth[rest])))
+    return colour > UNLIKE_COLOUR or step > UNLIKE_DEPTH
 
 
 def boarded(box: Boxes, scene: Scene) -> bool:
