@@ -85,9 +85,9 @@ def holds_wall(box: Boxes, scene: Scene) -> bool:
     depth = scene.merged.depth[inner]
     known = scene.merged.coloured[inner] & scene.visible[inner] & np.isfinite(depth)
     wall = known & scene.wall[inner]
-    rest = known & ~wall
-    if not LITTLE < np.count_nonzero(wall) / max(np.count_nonzero(known), 1) < 0.5:
+    if not LITTLE * np.count_nonzero(known) < np.count_nonzero(wall) < np.count_nonzero(known) / 2:
         return False
+    rest = known & ~wall
     colours = scene.merged.colour[inner]
     colour = float(np.abs(median_colour(colours, wall) - median_colour(colours, rest)).max())
     step = abs(float(np.median(depth[wall])) - float(np.median(depth[rest])))
