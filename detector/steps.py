@@ -72,7 +72,9 @@ def is_set_apart(box: Boxes, scene: Scene, *, boards: bool = True) -> bool:
         boards: False does not accept the last.
     """
     change = steps(box, scene)
-    return (change.agree() and not holds_wall(box, scene)) or change.framed() or (boards and boarded(box, scene))
+    if change.framed():
+        return True
+    return (change.agree() or (boards and boarded(box, scene))) and not holds_wall(box, scene)
 
 
 def holds_wall(box: Boxes, scene: Scene) -> bool:
