@@ -79,8 +79,10 @@ def find_structure(
         scanner: What took the scans.
 
     Raises:
-        MissionError: There is no floor under the scanners, or no wall round them.
+        MissionError: There is no scan, no floor under the scanners, or no wall round them.
     """
+    if not scans:
+        raise MissionError("no scan of the room found its place")
     parameters = parameters or StructureParameters()
     scanners = np.array([scan.scanner_in_world for scan in scans])
     points, normals = _merged(scans, scanners, parameters)

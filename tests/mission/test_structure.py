@@ -254,3 +254,8 @@ def test_a_leaf_as_high_as_a_roofless_wall_is_no_wall() -> None:
     structure = find_structure(scanned(room, (3.4, 2.3), (4.6, 1.8)))
 
     assert corners(structure) == RECTANGLE
+
+
+def test_without_a_scan_that_found_its_place_there_is_no_room() -> None:
+    with pytest.raises(MissionError, match="no scan"):
+        find_structure([])
