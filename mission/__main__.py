@@ -100,7 +100,7 @@ def parser() -> argparse.ArgumentParser:
     run = kinds.add_parser(
         "run",
         help="run a mission in a scene",
-        description="Scan a room with MoPAD until it is covered, detect its doors, compare them with the joints.",
+        description="Scan a building room by room with MoPAD, detect the doors, compare them with the joints.",
         epilog=EXAMPLES
         + "\nexit status:\n  0 done    1 done, but below a --fail-under    2 bad command line, scene or file"
         "\n  3 the mission could not go on    130 interrupted (files are complete in every case but 2)\n",

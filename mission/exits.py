@@ -16,6 +16,10 @@ from sim.parameters import Parameters
 
 _THICKNESS = 0.05
 """A leaf that stands open takes this much of the doorway where it hinges in it [m]."""
+_SAME_DOORWAY = 0.5
+"""Lines so close beside each other pass one doorway; along it they may be a wall's thickness apart, twice this [m]."""
+_PARALLEL = 0.9
+"""Lines at a larger angle pass two doorways in a corner [cosine]."""
 _STEP = 0.01
 """Between the centre lines that are tried [m]."""
 
@@ -28,8 +32,8 @@ class ExitParameters(Parameters):
     threshold: float = Field(
         default=0.1, ge=-0.5, le=1.0, description="a scan in the doorway is taken so far behind the wall's plane [m]"
     )
-    nearest: float = Field(default=0.6, ge=0.3, le=3.0, description="to the wall's plane of where the robot turns [m]")
-    furthest: float = Field(default=2.5, ge=0.5, le=10.0, description="likewise [m]")
+    nearest: float = Field(default=0.6, ge=0.3, le=1.5, description="to the wall's plane of where the robot turns [m]")
+    furthest: float = Field(default=2.5, ge=1.5, le=10.0, description="likewise [m]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,10 +53,12 @@ class CentreLine:
         """The same line as a way into the room."""
         return CentreLine(self.middle, -self.out)
 
-    def aside(self, place: NDArray[np.float64]) -> float:
-        """Distance of a place (2,) from the line [m]."""
-        x, y = place - self.middle
-        return float(abs(x * self.out[1] - y * self.out[0]))
+    def is_like(self, other: CentreLine) -> bool:
+        """Whether two lines, measured at two times or from both sides of a wall, pass one doorway."""
+        x, y = other.middle - self.middle
+        aside, apart = abs(x * self.out[1] - y * self.out[0]), np.hypot(x, y)
+        parallel = abs(float(self.out @ other.out)) > _PARALLEL
+        return bool(parallel and aside < _SAME_DOORWAY and apart < 2 * _SAME_DOORWAY)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +119,7 @@ def clear_span(door: Door) -> tuple[float, float]:
     r = door.rectangle
     low, high = r.left, r.right
     if door.kind == "sliding":
-        slid = sum(leaf.slid for leaf in door.leaves)
+        slid = sum(leaf.slid for leaf in door.leaves)  # the detector knows sliding doors of one leaf
         return (low, low + slid) if slid > 0 else (high + slid, high)
     for place, leaf in enumerate(door.leaves):
         if not np.isfinite(leaf.opening_angle):

@@ -18,13 +18,10 @@ from mission.exits import CentreLine, Exit
 from mission.explored_room import ExploredRoom
 from mission.grid import OccupancyGrid
 from mission.linking import LinkParameters, common_scan_link, door_link, same_doors, scan_link
-from mission.plan_polygon import within_polygon
 from mission.pose_graph import Anchor, Link, solve
 from mission.rigid import Pose, inverted, transformed
 from mission.structure import Structure
 
-_SAME_EXIT = 0.5
-"""Exits of two rooms whose middles are nearer than this, beside a wall's thickness, are one doorway [m]."""
 _BEYOND = 0.8
 """So far behind the wall's plane lies what an exit leads to [m]."""
 
@@ -38,9 +35,13 @@ class CompletedRoom:
 
     explored: ExploredRoom
     structure: Structure
-    grid: OccupancyGrid
     faces: tuple[DoorFace, ...]
     exits: tuple[Exit, ...]
+
+    @property
+    def grid(self) -> OccupancyGrid:
+        """Where the robot can stand and drive, by all that is known by now."""
+        return self.explored.grid(self.structure.floor_height)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +53,9 @@ class Doorway:
     lines: dict[int, CentreLine]
     """On which it passes, out of each of both rooms, by the room's number and in its frame."""
 
-    def leads_on(self, room: int) -> int | None:
-        """The room on the other side; None if the door is none of this room's."""
-        return next((other for other in self.lines if other != room), None) if room in self.lines else None
+    def beyond(self, room: int) -> int:
+        """The room on the other side."""
+        return next(other for other in self.lines if other != room)
 
 
 class ExploredBuilding:
@@ -99,12 +100,8 @@ class ExploredBuilding:
         """Do not try an exit again."""
         self._given_up.append(way)
 
-    def complete(self, room: CompletedRoom) -> list[Link]:
-        """Add a room, link it to the others by their doors, and find out where all of them lie.
-
-        Returns:
-            The new links.
-        """
+    def complete(self, room: CompletedRoom) -> None:
+        """Add a room, link it to the others by their doors, and find out where all of them lie."""
         number = room.explored.number
         known = {door for link in self.links if link.doors for door in link.doors}
         others = [face for face in self.faces() if face.door_id not in known]
@@ -114,14 +111,12 @@ class ExploredBuilding:
         self.links += new
         self._solve()
         driven = {frozenset((link.first, link.second)) for link in self.links if link.doors is None}
-        for link in list(new):
+        for link in new:
             if frozenset((link.first, link.second)) not in driven:
                 common = self._common(link.first, link.second)
                 if common is not None:
-                    new.append(common)
                     self.links.append(common)
                     self._solve()
-        return new
 
     def faces(self) -> list[DoorFace]:
         """All doors of all completed rooms."""
@@ -131,56 +126,44 @@ class ExploredBuilding:
         """Number of the completed room that a place (3,) of the world lies in."""
         for number, room in self.rooms.items():
             here = transformed(place_in_world[None], inverted(self.world_from_room[number]))
-            if within_polygon(here[:, :2], room.structure.polygon)[0]:
+            if room.structure.interior(here)[0]:
                 return number
         return None
 
     def unexplored(self, room: int) -> Exit | None:
         """The next exit to take from a room: its own first, else of the room that is the fewest doors away."""
-        for number in self._by_doors(room):
-            for way in self.rooms[number].exits:
+        for number in self._reached_by(room):
+            for way in self.rooms[number].exits if number in self.rooms else ():
                 if way not in self._given_up and not self._leads_to_known(number, way):
                     return way
         return None
 
     def route(self, start: int, goal: int) -> list[Doorway]:
         """The doorways to pass from one room to another, the fewest of them."""
-        before: dict[int, Doorway | None] = {start: None}
-        queue = deque([start])
-        while queue and goal not in before:
-            room = queue.popleft()
-            for doorway in self.doorways:
-                beyond = doorway.leads_on(room)
-                if beyond is not None and beyond not in before:
-                    before[beyond] = doorway
-                    queue.append(beyond)
+        reached_by = self._reached_by(start)
         way: list[Doorway] = []
         room = goal
-        while (passed := before[room]) is not None:
+        while (passed := reached_by[room]) is not None:
             way.insert(0, passed)
-            (room,) = (other for other in passed.lines if other != room)
+            room = passed.beyond(room)
         return way
 
-    def _by_doors(self, start: int) -> list[int]:
-        """Completed rooms that the robot can drive to, the nearest first."""
-        found, queue = [start], deque([start])
+    def _reached_by(self, start: int) -> dict[int, Doorway | None]:
+        """Rooms that the robot can drive to, the fewest doors first, and the last doorway on the way to each."""
+        found: dict[int, Doorway | None] = {start: None}
+        queue = deque([start])
         while queue:
             room = queue.popleft()
             for doorway in self.doorways:
-                beyond = doorway.leads_on(room)
-                if beyond is not None and beyond not in found:
-                    found.append(beyond)
+                if room in doorway.lines and (beyond := doorway.beyond(room)) not in found:
+                    found[beyond] = doorway
                     queue.append(beyond)
-        return [room for room in found if room in self.rooms]
+        return found
 
     def _leads_to_known(self, room: int, way: Exit) -> bool:
         """Whether an exit is a doorway that was passed, or what lies behind it is a room that is done."""
         passed = [doorway.lines[room] for doorway in self.doorways if room in doorway.lines]
-        if any(
-            line.aside(way.line.middle) < _SAME_EXIT
-            and float(np.hypot(*(line.middle - way.line.middle))) < 2 * _SAME_EXIT
-            for line in passed
-        ):
+        if any(line.is_like(way.line) for line in passed):
             return True
         floor = self.rooms[room].structure.floor_height
         beyond = np.array([*way.line.at(_BEYOND), floor + 1.0])

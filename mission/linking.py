@@ -176,11 +176,3 @@ def _offset(
 
 def _heading(direction: NDArray[np.float64]) -> float:
     return float(np.arctan2(direction[1], direction[0]))
-
-
-def linked(door_id: str, links: Sequence[Link]) -> str | None:
-    """The other face of a door, if it is known."""
-    for link in links:
-        if link.doors and door_id in link.doors:
-            return link.doors[1 - link.doors.index(door_id)]
-    return None

@@ -86,12 +86,12 @@ class Mission:
         room, entered = self._begin("start")
         yield entered
         yield from self._explore(room)
-        for number, pose in enumerate(self._scene.set_downs, start=2):
+        for site, pose in self._scene.set_downs.items():
             if not self._may_go_on():
                 break
             if self._building.room_at(pose[:3, 3] + [0.0, 0.0, 1.0]) is not None:
                 continue
-            yield from self._set_down(number, pose)
+            yield from self._set_down(site, pose)
         count = len(self._building.rooms)
         rooms = "the room is scanned and its" if count == 1 else f"{count} rooms are scanned and their"
         yield self.finished("completed", f"{rooms} doors are judged")
@@ -144,12 +144,16 @@ class Mission:
                 yield from self._do(beyond)
             except MissionError as error:  # it leads out into the open, or to where nothing can be made out
                 yield self._surveyor.remark(f"behind door {way.face.door_id}: {error}")
-                here = yield from self._traveller.come_back(beyond, way)
                 self._building.drop(beyond.number)
                 self._building.give_up(way)
+                back = yield from self._traveller.come_back(way)
+                if back is None:
+                    yield self._surveyor.remark(f"the robot cannot come back through door {way.face.door_id}")
+                    return
+                here = back
 
     def _may_go_on(self) -> bool:
-        return self._rooms < self._config.planning.max_rooms
+        return len(self._building.rooms) < self._config.planning.max_rooms
 
     def _next_room(self) -> ExploredRoom:
         """A room of which nothing is known yet."""
@@ -162,7 +166,7 @@ class Mission:
         self._building.enter(room.number, self._mopad.world_from_base[:3, 3], **deviations)
         return room, self._entered(how)
 
-    def _set_down(self, site: int, true_world_from_base: Pose) -> Iterator[Event]:
+    def _set_down(self, site: str, true_world_from_base: Pose) -> Iterator[Event]:
         """Have an operator carry the robot to where the scene says, who knows the place by eye only."""
         self._mopad.set_down(true_world_from_base)
         room, entered = self._begin("set down", deviation=SET_DOWN_DEVIATION, turn_deviation=SET_DOWN_TURN_DEVIATION)
@@ -172,7 +176,7 @@ class Mission:
         except MissionError as error:
             if room.number in self._building.rooms:
                 raise
-            yield self._surveyor.remark(f"at start_{site}: {error}")
+            yield self._surveyor.remark(f"at {site}: {error}")
             self._building.drop(room.number)
 
     def _do(self, room: ExploredRoom) -> Iterator[Event]:
@@ -206,9 +210,8 @@ class Mission:
                 robot_height=self._config.navigation.grid.robot_height,
                 parameters=self._config.navigation.exits,
             )
-            grid = room.grid(structure.floor_height)
             before = dict(self._building.world_from_room)
-            self._building.complete(CompletedRoom(room, structure, grid, faces, tuple(exits)))
+            self._building.complete(CompletedRoom(room, structure, faces, tuple(exits)))
             self._walls[room.number] = judged(results)
         del results
         yield surveyor.event(
@@ -235,7 +238,5 @@ class Mission:
                 room=number,
                 outline=np.asarray(transformed(in_room, world_from_room)[:, :2], float),
             )
-        here, self._surveyor.room = self._surveyor.room, number
-        evaluated: DoorsEvaluated = self._surveyor.event(DoorsEvaluated, doors=doors, missed=missed)
-        self._surveyor.room = here
+        evaluated: DoorsEvaluated = self._surveyor.event(DoorsEvaluated, room=number, doors=doors, missed=missed)
         return evaluated

@@ -16,7 +16,6 @@ class PoseError:
     """Of one registered scan."""
 
     scan: int
-    room: int
     within_room: float
     """Translation against the room's first scan [m]."""
     translation: float
@@ -30,7 +29,7 @@ def pose_errors(registrations: Sequence[Registered], world_from_room: Mapping[in
 
     Args:
         registrations: In the order of the mission.
-        world_from_room: (4, 4) of each room, as the links tell at the end; the map's own frame by default.
+        world_from_room: (4, 4) of each room, as the links tell at the end.
     """
     first: dict[int, Registered] = {}
     errors = []
@@ -38,13 +37,12 @@ def pose_errors(registrations: Sequence[Registered], world_from_room: Mapping[in
         if not event.accepted:
             continue
         start = first.setdefault(event.room, event)
-        estimate = world_from_room.get(event.room, np.eye(4)) @ event.world_from_scanner
+        estimate = world_from_room[event.room] @ event.world_from_scanner
         moved = inverted(start.world_from_scanner) @ event.world_from_scanner
         true_moved = inverted(start.true_world_from_scanner) @ event.true_world_from_scanner
         errors.append(
             PoseError(
                 scan=event.scan_number,
-                room=event.room,
                 within_room=_apart(moved, true_moved),
                 translation=_apart(estimate, event.true_world_from_scanner),
                 rotation=angle_between(event.true_world_from_scanner, estimate),

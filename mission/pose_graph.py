@@ -52,7 +52,7 @@ class Anchor:
 
 
 LEVEL = 0.002
-"""How well heights are told where the robot is set down, 1 sigma [m]."""
+"""How well the height of a room's frame is known without any link: the robot stands on its floor, 1 sigma [m]."""
 
 
 def solve(anchors: Mapping[int, Anchor], links: Sequence[Link]) -> dict[int, Pose]:

@@ -30,6 +30,7 @@ from mission.events import (
 from mission.memory import peak_memory
 from mission.pose_errors import PoseError, pose_errors
 from mission.pose_graph import Link
+from mission.rigid import Pose
 
 SCHEMA = 1
 """Version of the layout of doors.json."""
@@ -53,6 +54,8 @@ class RoomReport:
     """Through which door."""
     exits: tuple[str, ...] = ()
     """Doors that it could drive through."""
+    done: bool = False
+    """Whether its doors were judged; what lies behind a door may turn out to be no room."""
 
 
 @dataclass
@@ -65,8 +68,10 @@ class Report:
     metres: float = 0.0
     """Way driven, as odometry has it [m]."""
     registrations: list[Registered] = field(default_factory=list)
-    tied: RoomsTied | None = None
-    """The last of them."""
+    links: tuple[Link, ...] = ()
+    """Between rooms."""
+    world_from_room: dict[int, Pose] = field(default_factory=dict)
+    """(4, 4) of each room, as far as is known."""
     contacts: int = 0
     """Legs that ended at a touch."""
 
@@ -77,8 +82,10 @@ class Report:
             case RoomEntered():
                 self.rooms[event.room] = room
                 room.how, room.door = event.how, event.door
+                self.world_from_room[event.room] = event.world_from_room
             case RoomsTied():
-                self.tied = event
+                self.links = event.links
+                self.world_from_room |= event.world_from_room
                 room.exits = event.exits
             case MissionStarted():
                 self.started = event
@@ -99,7 +106,7 @@ class Report:
             case DoorsDetected():
                 room.walls = len(event.results)
             case DoorsEvaluated():
-                room.doors, room.missed = event.doors, event.missed
+                room.doors, room.missed, room.done = event.doors, event.missed, True
             case MissionFinished():
                 self.finished = event
 
@@ -118,14 +125,11 @@ class Report:
                 }
                 for room in self.rooms.values()
             ],
-            "links": [_link(link) for link in self._links() if link.doors],
+            "links": [_link(link) for link in self.links if link.doors],
         }
 
-    def _links(self) -> tuple[Link, ...]:
-        return self.tied.links if self.tied else ()
-
     def _pose_errors(self) -> list[PoseError]:
-        return pose_errors(self.registrations, self.tied.world_from_room if self.tied else {})
+        return pose_errors(self.registrations, self.world_from_room)
 
     def pose_metrics(self) -> dict[str, float | None]:
         """Errors of the registered scans: within their rooms, and over the building."""
@@ -156,7 +160,7 @@ class Report:
             "e_rel": _mean([o.relative_error for o in found]),
             "angle_mae_deg": _mean(errors),
             "angle_max_deg": _rounded(max(errors)) if errors else None,
-            "coverage": _mean([room.coverage for room in self.rooms.values() if room.walls]),
+            "coverage": _mean([room.coverage for room in self.rooms.values() if room.done]),
         }
 
     def summary(self, stage_seconds: Mapping[str, float], wall_clock: float) -> dict[str, Any]:
@@ -179,6 +183,7 @@ class Report:
                     "id": room.id,
                     "entered": room.how,
                     "through": room.door,
+                    "done": room.done,
                     "exits": list(room.exits),
                     "scans": room.scans,
                     "coverage": _rounded(room.coverage),

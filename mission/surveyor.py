@@ -60,9 +60,9 @@ class Surveyor:
         self.room = 1
         """Number of the room that events belong to."""
 
-    def event(self, kind: type[Any], **content: Any) -> Any:
-        """The next event, of now and here."""
-        event = kind(step=self._steps, time=self._mopad.time, room=self.room, **content)
+    def event(self, kind: type[Any], *, room: int | None = None, **content: Any) -> Any:
+        """The next event, of now, and of the room that the robot is in or of another."""
+        event = kind(step=self._steps, time=self._mopad.time, room=self.room if room is None else room, **content)
         self._steps += 1
         return event
 

@@ -13,9 +13,9 @@ from mission.explored_building import Doorway, ExploredBuilding
 from mission.explored_room import ExploredRoom
 from mission.grid import Footprint, OccupancyGrid
 from mission.mopad import Mopad
-from mission.navigation import NavigationParameters, plan_path
+from mission.navigation import NavigationParameters, road_map
 from mission.rigid import inverted, transformed
-from mission.surveyor import Surveyor
+from mission.surveyor import MAX_DETOURS, Surveyor
 
 Place = NDArray[np.float64]
 """(2,) in a room's frame [m]."""
@@ -53,19 +53,21 @@ class Traveller:
         """
         surveyor, parameters = self._surveyor, self._parameters
         here = yield from self._drive_to_room(here, way.face.room)
-        path = self._approach(here, way.line) if here == way.face.room else None
-        if path is None:
-            yield surveyor.remark(f"door {way.face.door_id} is out of reach")
+        room = self._building.rooms[way.face.room]
+        floor, door = room.structure.floor_height, way.face.door_id
+        if here != way.face.room or not (yield from self._come_before(here, way.line)):
+            yield surveyor.remark(f"door {door} is out of reach")
             return here, False
-        room, spot = self._building.rooms[here], path[-1]
-        floor, threshold = room.structure.floor_height, way.line.at(parameters.exits.threshold)
-        failed = f"an obstacle in door {way.face.door_id}"
-        if (yield from surveyor.drive(room.explored, np.vstack([path, threshold]), floor)):
-            failed = f"no place to turn is in sight behind door {way.face.door_id}"
+        spot = self._mopad.world_from_base[:2, 3]
+        failed = f"an obstacle in door {door}"
+        if (
+            yield from surveyor.drive(room.explored, self._straight_to(way.line.at(parameters.exits.threshold)), floor)
+        ):
+            failed = f"no place to turn is in sight behind door {door}"
             tied = yield from surveyor.scan_threshold(room.explored, beyond)
             landing = self._landing(beyond.grid(floor), way.line) if tied else None
             if landing is not None and (yield from surveyor.drive(beyond, self._straight_to(landing), floor)):
-                doorway = Doorway(way.face.door_id, {here: way.line, beyond.number: way.line.reversed()})
+                doorway = Doorway(door, {here: way.line, beyond.number: way.line.reversed()})
                 self._building.pass_through(doorway, here, beyond.number, self._mopad.world_from_base[:3, 3])
                 surveyor.room = beyond.number
                 return beyond.number, True
@@ -73,19 +75,20 @@ class Traveller:
         yield from surveyor.drive(room.explored, self._straight_to(spot), floor)
         return here, False
 
-    def come_back(self, beyond: ExploredRoom, way: Exit) -> Generator[Event, None, int]:
+    def come_back(self, way: Exit) -> Generator[Event, None, int | None]:
         """Return straight from a place behind an exit that is no room.
 
         Returns:
-            The room that the robot is in.
+            The room that the robot is in; None if it could not get there.
         """
         room = self._building.rooms[way.face.room]
         spot = self._landing(room.grid, way.line.reversed())
+        if spot is None:
+            return None
         self._surveyor.room = way.face.room
-        if spot is not None:
-            path = np.vstack([self._straight_to(way.line.at(self._parameters.exits.threshold)), spot])
-            yield from self._surveyor.drive(room.explored, path, room.structure.floor_height)
-        return way.face.room
+        path = np.vstack([self._straight_to(way.line.at(self._parameters.exits.threshold)), spot])
+        arrived = yield from self._surveyor.drive(room.explored, path, room.structure.floor_height)
+        return way.face.room if arrived else None
 
     def _drive_to_room(self, here: int, goal: int) -> Generator[Event, None, int]:
         """Drive from room to room through the doors that the robot knows.
@@ -95,33 +98,56 @@ class Traveller:
         """
         building, mopad = self._building, self._mopad
         for doorway in building.route(here, goal):
-            room = building.rooms[here]
-            (there,) = (other for other in doorway.lines if other != here)
-            path = self._approach(here, doorway.lines[here])
+            room, there = building.rooms[here], doorway.beyond(here)
             landing = self._landing(building.rooms[there].grid, doorway.lines[there].reversed())
-            if path is None or landing is None:
+            if landing is None or not (yield from self._come_before(here, doorway.lines[here])):
                 return here
             here_from_there = inverted(building.world_from_room[here]) @ building.world_from_room[there]
-            beyond = transformed(np.array([[*landing, 0.0]]), here_from_there)[:, :2]
+            beyond = np.asarray(transformed(np.array([[*landing, 0.0]]), here_from_there)[0, :2], float)
             floor = room.structure.floor_height
-            if not (yield from self._surveyor.drive(room.explored, np.vstack([path, beyond]), floor)):
+            if not (yield from self._surveyor.drive(room.explored, self._straight_to(beyond), floor)):
                 return here
             mopad.believe(inverted(here_from_there) @ mopad.world_from_base)
             here = self._surveyor.room = there
         return here
 
+    def _come_before(self, here: int, line: CentreLine) -> Generator[Event, None, bool]:
+        """Drive to where the robot can turn towards a doorway; a way that ends early leads to another.
+
+        Returns:
+            Whether it stands there.
+        """
+        room = self._building.rooms[here]
+        for _ in range(MAX_DETOURS):
+            path = self._approach(here, line)
+            if path is None:
+                return False
+            if (yield from self._surveyor.drive(room.explored, path, room.structure.floor_height)):
+                return True
+        return False
+
     def _approach(self, here: int, line: CentreLine) -> NDArray[np.float64] | None:
         """Way (P, 2) to the nearest place before a doorway where the robot can turn towards it."""
-        grid, pose = self._building.rooms[here].grid, self._mopad.world_from_base
-        places = [line.at(-distance) for distance in self._distances()]
-        free = [place for place in places if grid.clearance_at(place) >= self._turning]
-        paths = (plan_path(grid, pose, p, footprint=self._footprint, parameters=self._parameters) for p in free)
-        return next((path for path in paths if path is not None), None)
+        places = np.array([line.at(-distance) for distance in self._distances()])
+        roads = road_map(
+            self._building.rooms[here].grid,
+            self._mopad.world_from_base,
+            footprint=self._footprint,
+            goals=places,
+            parameters=self._parameters,
+        )
+        return next((path for k in range(len(places)) if (path := roads.path_to(1 + k)) is not None), None)
 
     def _landing(self, grid: OccupancyGrid, line: CentreLine) -> Place | None:
-        """The nearest place straight behind a doorway where the robot can turn."""
-        places = (line.at(distance) for distance in self._distances())
-        return next((place for place in places if grid.clearance_at(place) >= self._turning), None)
+        """The nearest place straight behind a doorway where the robot can turn, with nothing before it."""
+        needed = self._footprint.width / 2 + self._parameters.exits.margin - grid.resolution
+        for place in (line.at(distance) for distance in self._distances()):
+            clearance = float(grid.clearance_at(place))
+            if clearance >= self._turning:
+                return place
+            if clearance < needed:
+                return None
+        return None
 
     @property
     def _turning(self) -> float:

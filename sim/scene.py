@@ -52,9 +52,9 @@ class Scene:
     """What closes which opening; found once."""
     world_from_base: np.ndarray
     """(4, 4) start pose of the robot's base."""
-    set_downs: tuple[np.ndarray, ...]
-    """(4, 4) poses of the base at which an operator sets the robot down where no way leads on: the sites `start_2`,
-    `start_3`... in this order."""
+    set_downs: dict[str, np.ndarray]
+    """(4, 4) poses of the base at which an operator sets the robot down where no way leads on, by their sites:
+    `start_2`, `start_3`... in this order."""
     robot_bodies: frozenset[int]
     """Ids of the robot's bodies: its own sensors do not see them."""
     robot_prefix: str

@@ -127,22 +127,24 @@ def require_surroundings(rays: Rays, world_from_base: np.ndarray, footprint: tup
 
 def set_down_poses(
     model: mujoco.MjModel, data: mujoco.MjData, rays: Rays, footprint: tuple[float, float]
-) -> tuple[np.ndarray, ...]:
-    """World poses (4, 4) of the base at the sites `start_2`, `start_3`..., in the order of their numbers.
+) -> dict[str, np.ndarray]:
+    """World poses (4, 4) of the base at the sites `start_2`, `start_3`..., by their names, in the order of the numbers.
 
     Raises:
         SimError: there is no floor under one, no wall around it, or something in the way; says which.
     """
-    numbered = [(re.fullmatch(r"start_(\d+)", model.site(site).name), site) for site in range(model.nsite)]
-    poses = []
-    for _, site in sorted((int(match[1]), site) for match, site in numbered if match):
+    named = ((model.site(site).name, site) for site in range(model.nsite))
+    numbered = [(int(match[1]), site) for name, site in named if (match := re.fullmatch(r"start_(\d+)", name))]
+    poses = {}
+    for _, site in sorted(pair for pair in numbered if pair[0] > 1):
+        name = model.site(site).name
         try:
             pose = pose_on_floor(rays, data.site_xpos[site], data.site_xmat[site].reshape(3, 3)[:, 0])
             require_surroundings(rays, pose, footprint)
         except SimError as error:
-            raise SimError(f"site {model.site(site).name}: {error}") from None
-        poses.append(pose)
-    return tuple(poses)
+            raise SimError(f"site {name}: {error}") from None
+        poses[name] = pose
+    return poses
 
 
 def upright_pose(position: np.ndarray, heading: float) -> np.ndarray:

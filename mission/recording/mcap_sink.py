@@ -45,8 +45,8 @@ from mission.recording import mcap_records as records
 from mission.recording.drawing import label_colours
 from mission.recording.mcap_messages import MAP, room_frame
 from mission.recording.mcap_topics import open_channels
+from mission.recording.room_frames import RoomFrames
 from mission.recording.sentences import level, sentence
-from mission.rigid import Pose
 
 if TYPE_CHECKING:
     from sim.hokuyo import LaserScan
@@ -70,7 +70,7 @@ class McapSink:
         self._path = path
         self._last_log_time = 0
         self._joints: tuple[str, ...] = ()
-        self._world_from_room: dict[int, Pose] = {}
+        self._frames = RoomFrames()
         self._walls: dict[int, list[SceneEntity]] = {}
 
     def __enter__(self) -> Self:
@@ -121,14 +121,14 @@ class McapSink:
 
     @_record.register
     def _(self, event: RoomEntered) -> None:
-        self._world_from_room[event.room] = event.world_from_room
+        self._frames.follow(event)
         self._log("/tf", self._transforms((MAP, room_frame(event.room), event.world_from_room)))
         base = event.world_from_room @ event.world_from_base
         self._log("/tf", self._transforms((MAP, "base", base), (MAP, "true base", event.true_world_from_base)))
 
     @_record.register
     def _(self, event: RoomsTied) -> None:
-        self._world_from_room |= event.world_from_room
+        self._frames.follow(event)
         rooms = [(MAP, room_frame(room), pose) for room, pose in event.world_from_room.items()]
         self._log("/tf", self._transforms(*rooms))
         self._log("/building/rooms", records.rooms(event))
@@ -204,7 +204,7 @@ class McapSink:
 
     def _log_way(self, event: Drove) -> None:
         """Poses, joints and Hokuyo scans of a leg, in the order of their times."""
-        world_from_room = self._world_from_room.get(event.room, np.eye(4))
+        world_from_room = self._frames[event.room]
         scans = sorted(event.laser_scans, key=lambda scan: scan.time)
         for place, time in enumerate(event.times):
             while scans and scans[0].time <= time:

@@ -7,10 +7,11 @@ from functools import singledispatchmethod
 import numpy as np
 import rerun as rr
 
-from mission.events import Event, Labelled, Planned, Structured
+from mission.events import Event, Labelled, Planned, RoomEntered, RoomsTied, Structured
 from mission.recording import entities
 from mission.recording.drawing import CELL_COLOURS, score_colours
-from mission.recording.rerun_world import LIFT, PLAN_COLOUR, hover
+from mission.recording.rerun_world import LIFT, PLAN_COLOUR, hover, log_pose
+from mission.rigid import Pose
 
 CLUTTER_COLOUR = (190, 110, 60)
 
@@ -26,6 +27,19 @@ class Plans:
     @singledispatchmethod
     def draw(self, event: Event) -> None:
         """Draw one event; most are no matter of planning."""
+
+    @draw.register
+    def _(self, event: RoomEntered) -> None:
+        self._place(event.world_from_room)
+
+    @draw.register
+    def _(self, event: RoomsTied) -> None:
+        self._place(event.world_from_room[event.room])
+
+    def _place(self, world_from_room: Pose) -> None:
+        """Put what is drawn of the present room where the room lies."""
+        for entity in (entities.MAP, entities.PLANS):
+            log_pose(self._rec, entity, world_from_room)
 
     @draw.register
     def _(self, event: Structured) -> None:

@@ -25,6 +25,7 @@ from mission.events import (
 from mission.recording import entities
 from mission.recording.drawing import TRUTH_COLOUR, WALL_COLOUR, display_colours, on_grid, outline, thin
 from mission.recording.entities import child
+from mission.recording.room_frames import RoomFrames
 from mission.rigid import inverted, transformed
 
 PATH_COLOUR = (255, 120, 40)
@@ -59,7 +60,7 @@ class World:
         self._scanner_from_base: Pose = np.eye(4)
         self._floor = 0.0
         self._scan_number = 0
-        self._world_from_room: dict[int, Pose] = {}
+        self._frames = RoomFrames()
         self._in_room: dict[str, int] = {}
 
     @singledispatchmethod
@@ -80,27 +81,22 @@ class World:
 
     @draw.register
     def _(self, event: RoomEntered) -> None:
-        self._world_from_room[event.room] = event.world_from_room
+        self._frames.follow(event)
         log_pose(self._rec, entities.ROBOT, event.world_from_room @ event.world_from_base)
 
     @draw.register
     def _(self, event: RoomsTied) -> None:
         """Move what was drawn in the rooms' frames to where the rooms lie by now."""
-        moved = {
-            room
-            for room, pose in event.world_from_room.items()
-            if not np.array_equal(pose, self._world_from_room.get(room, np.eye(4)))
-        }
-        self._world_from_room |= event.world_from_room
+        moved = self._frames.follow(event)
         for entity, room in self._in_room.items():
             if room in moved:
-                log_pose(self._rec, entity, event.world_from_room[room])
+                log_pose(self._rec, entity, moved[room])
 
     @draw.register
     def _(self, event: Registered) -> None:
         self._scan_number = event.scan_number
-        world_from_room = self._world_from_room.get(event.room, np.eye(4))
-        log_pose(self._rec, entities.ROBOT, world_from_room @ event.world_from_scanner @ self._scanner_from_base)
+        world_from_scanner = self._frames[event.room] @ event.world_from_scanner
+        log_pose(self._rec, entities.ROBOT, world_from_scanner @ self._scanner_from_base)
         self._belongs(child(entities.CLOUDS, f"{event.scan_number:03d}"), event.room)
         place = child(entities.CLOUDS, f"{event.scan_number:03d}", "scanner")
         log_pose(self._rec, place, event.world_from_scanner)
@@ -148,20 +144,20 @@ class World:
     def _in_world(self, room: int, way: NDArray[np.float64]) -> NDArray[np.float64]:
         """(P, 2) places of a room's frame, in the world."""
         level = np.column_stack([way, np.zeros(len(way))])
-        return np.asarray(transformed(level, self._world_from_room.get(room, np.eye(4)))[:, :2], float)
+        return np.asarray(transformed(level, self._frames[room])[:, :2], float)
 
     def _belongs(self, entity: str, room: int) -> None:
         """Draw an entity in the frame of a room."""
         if entity not in self._in_room:
             self._in_room[entity] = room
-            pose = self._world_from_room.get(room, np.eye(4))
+            pose = self._frames[room]
             if not np.array_equal(pose, np.eye(4)):
                 log_pose(self._rec, entity, pose)
 
     def _drive(self, event: Drove) -> None:
         """The robot's poses, each at its own mission time."""
         count = len(event.times)
-        poses = self._world_from_room.get(event.room, np.eye(4)) @ event.world_from_base
+        poses = self._frames[event.room] @ event.world_from_base
         self._rec.send_columns(
             entities.ROBOT,
             [
@@ -208,7 +204,7 @@ class World:
         points = []
         for scan in (scan for scan in event.laser_scans if scan.time == event.laser_scans[-1].time):
             pose = event.world_from_base[min(int(np.searchsorted(event.times, scan.time)), len(event.times) - 1)]
-            points.append(transformed(scan.points_in_base(), pose))
+            points.append(transformed(scan.points_in_base(), self._frames[event.room] @ pose))
         self._rec.log(
             entities.LASERS, rr.Points3D(np.concatenate(points), colors=LASER_COLOUR, radii=rr.Radius.ui_points(1.5))
         )

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from detector.result import Door
-from mission.exits import ExitParameters, clear_span, find_exits
+from mission.exits import CentreLine, ExitParameters, clear_span, find_exits
 from tests.mission.building_parts import door, face, leaf, wall
 from tests.mission.driving_world import FOOTPRINT
 
@@ -75,3 +75,12 @@ def test_what_stands_in_the_doorway_moves_the_way_aside_or_blocks_it() -> None:
 def test_a_lintel_and_the_floor_are_in_nobody_s_way() -> None:
     bands = np.array([[1.5, height, 0.0] for height in (0.0, 0.01, 0.02, 1.7, 1.8, 2.0)])
     assert len(exits_of(door(1.0, 1.9, leaf(90, "left")), bands)[0]) == 1
+
+
+def test_lines_through_one_doorway_are_alike_and_those_of_two_doors_in_a_corner_are_not() -> None:
+    line = CentreLine(np.array([2.0, 0.0]), np.array([0.0, -1.0]))
+    from_behind = CentreLine(np.array([2.1, -0.3]), np.array([0.02, 1.0]))  # a wall further, a little off
+    in_the_corner = CentreLine(np.array([2.45, 0.45]), np.array([1.0, 0.0]))
+    beside = CentreLine(np.array([2.9, 0.0]), np.array([0.0, -1.0]))
+    assert line.is_like(from_behind) and line.is_like(line.reversed())
+    assert not line.is_like(in_the_corner) and not line.is_like(beside)

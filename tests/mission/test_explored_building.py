@@ -10,6 +10,7 @@ import numpy as np
 from mission.exits import CentreLine, Exit
 from mission.explored_building import CompletedRoom, Doorway, ExploredBuilding
 from mission.linking import LinkParameters
+from mission.structure import Structure
 from tests.mission.building_parts import door, face, leaf, wall
 
 PITCH = 4.2
@@ -27,9 +28,8 @@ def completed(number: int, *exits: Exit) -> CompletedRoom:
     x = (number - 1) * PITCH
     polygon = np.array([[x, 0], [x + 4, 0], [x + 4, 4], [x, 4]], float)
     explored: Any = SimpleNamespace(number=number, samples=[], registrar=None)
-    structure: Any = SimpleNamespace(polygon=polygon, floor_height=0.0)
-    nothing: Any = None
-    return CompletedRoom(explored, structure, nothing, tuple(way.face for way in exits), exits)
+    structure = Structure(0.0, 2.6, (), polygon, np.full(4, -1))
+    return CompletedRoom(explored, structure, tuple(way.face for way in exits), exits)
 
 
 def row(*numbers: int) -> ExploredBuilding:
@@ -50,6 +50,7 @@ def test_a_place_belongs_to_the_room_whose_floor_it_is_over() -> None:
     assert building.room_at(np.array([2.0, 1.0, 1.0])) == 1
     assert building.room_at(np.array([6.0, 1.0, 1.0])) == 2
     assert building.room_at(np.array([4.1, 1.0, 1.0])) is None  # in the wall
+    assert building.room_at(np.array([2.0, 1.0, 4.0])) is None  # a storey higher
 
 
 def test_both_faces_of_a_passed_door_are_known_and_the_next_exit_is_the_nearest_that_is_not() -> None:

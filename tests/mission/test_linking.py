@@ -31,7 +31,7 @@ def test_two_faces_that_look_away_from_each_other_a_wall_apart_are_one_door() ->
 @pytest.mark.parametrize("offset", [0.3, -0.3])
 def test_a_face_is_known_again_though_the_room_was_set_down_beside_its_place(offset: float) -> None:
     here, there = both_sides()
-    assert same_doors([here], [there], frames(pose(offset, 0.05, 0.03)), PARAMETERS)
+    assert same_doors([here], [there], frames(pose(offset, 0.05, 0.03)), PARAMETERS) == [(here, there)]
 
 
 def test_doors_of_different_size_side_or_wall_are_different_doors() -> None:
@@ -69,7 +69,8 @@ def test_an_open_door_says_little_about_the_thickness_of_its_wall() -> None:
     assert link.deviations[1] == PARAMETERS.thickness_deviation
     found = solve({1: START, 2: TOLD}, [link])
     assert abs(found[2][0, 3]) < 0.001 and abs(turn_of(found[2])) < 1e-4  # along the wall it is as sharp as any
-    assert -0.15 < found[2][1, 3] < -0.01  # pulled towards a usual wall, held by the operator's word
+    # The operator's word holds it with 3 cm, the usual wall, 15 cm thinner, with 5: 0.15 x 3^2 / (3^2 + 5^2).
+    assert found[2][1, 3] == pytest.approx(-0.0397, abs=2e-4)
 
 
 def test_what_is_known_better_moves_less() -> None:

@@ -165,7 +165,7 @@ def test_the_summary_quotes_every_door_and_every_miss(recording: Path) -> None:
     ],
 )
 def test_a_photograph_counts_for_what_it_shows_of_a_door(left: float, area: float) -> None:
-    shot = Shot(b"", np.array([[80, 0, 60], [0, 80, 40], [0, 0, 1.0]]), 120, 80, np.eye(4), np.eye(4))
+    shot = Shot(b"", np.array([[80, 0, 60], [0, 80, 40], [0, 0, 1.0]]), 120, 80, 1, np.eye(4), np.eye(4))
     door = np.array([[left, -0.5, 2], [left + 1, -0.5, 2], [left + 1, 0.5, 2], [left, 0.5, 2]])
     assert shot.shown_area(door[None]) == pytest.approx(area)
     assert shot.shown_area(-door[None]) == 0  # behind the camera

@@ -59,7 +59,7 @@ def rooms_of(scene: Scene) -> list[TrueRoom]:
     """The rooms that the robot can get into: at the start, by sites `start_2`, `start_3`... and through open doors."""
     rays = Rays(*closed(scene), scene.robot_bodies)
     rooms: list[TrueRoom] = []
-    for pose in [scene.world_from_base, *scene.set_downs, *_entries(scene, rays)]:
+    for pose in [scene.world_from_base, *scene.set_downs.values(), *_entries(scene, rays)]:
         known = [room.places_in_world for room in rooms]
         if any(np.hypot(*(places[:, :2] - pose[:2, 3]).T).min() < RASTER for places in known):
             continue
