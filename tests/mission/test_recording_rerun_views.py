@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
 from detector.result import Candidate, Rectangle
+from mission import events
 from mission.events import DoorsEvaluated, Drove, Labelled, Planned
 from mission.recording.blueprint import outlook
 from mission.recording.rerun_doors import Shot
 from mission.recording.rerun_results import LABEL, label_places
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
+from tests.mission import recording_room as made
 from tests.mission.recording_room import ESTIMATE, JOINT
 from tests.mission.recording_story import story
 from tests.mission.rerun_file import column, event_of, points, record
@@ -192,3 +195,24 @@ def test_the_eye_looks_down_on_the_middle_of_the_room() -> None:
     seen = outlook(np.array([[10.0, -7, 0], [16, -2.5, 2.7]]))
     assert seen.target == pytest.approx([13, -4.75, 1.35])
     assert seen.eye[2] > 2.7
+
+
+def test_what_is_measured_in_a_room_is_drawn_where_the_room_lies(tmp_path: Path) -> None:
+    """Room 2 is entered 10 cm aside, and a link moves it to 20 cm."""
+    told = story()[:-1]
+
+    def tell(kind: type[events.Event], **changes: Any) -> None:
+        like = next(event for event in reversed(told) if isinstance(event, kind))
+        told.append(replace(like, step=len(told), time=told[-1].time, **changes))
+
+    tell(events.RoomEntered, room=2, how="door", door="1.2-a", world_from_room=made.pose(0.1, 0))
+    tell(events.Photographed, room=2, scan_number=3)
+    tell(events.Registered, room=2, scan_number=3)
+    tell(events.Coloured, room=2, scan_number=3)
+    tell(events.RoomsTied, room=2, world_from_room={1: np.eye(4), 2: made.pose(0.2, 0)})
+    path = record(tmp_path / "two rooms.rrd", told)
+    for entity, places in {"/world/scans/003": [0.1, 0.2], "/world/map": [0.0, 0.0, 0.1, 0.2]}.items():
+        assert [x[0][0] for x in column(path, entity, "Transform3D:translation")] == pytest.approx(places)
+    registered = next(event for event in told if isinstance(event, events.Registered) and event.room == 2)
+    shot = made.pose(0.1, 0) @ registered.world_from_scanner @ made.photo().scanner_from_camera
+    np.testing.assert_allclose(column(path, "/world/camera", "Transform3D:translation")[-1][0], shot[:3, 3], atol=1e-6)
