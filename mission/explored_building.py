@@ -18,7 +18,7 @@ from mission.exits import CentreLine, Exit
 from mission.explored_room import ExploredRoom
 from mission.grid import OccupancyGrid
 from mission.linking import LinkParameters, common_scan_link, door_link, same_doors, scan_link
-from mission.pose_graph import Anchor, Link, solve
+from mission.pose_graph import Anchor, Link, residual, solve
 from mission.rigid import Pose, inverted, transformed
 from mission.structure import Structure
 
@@ -27,6 +27,9 @@ _BEYOND = 0.8
 
 _FREE = (1.0, 0.5)
 """Of a room whose place follows from the links alone, 1 sigma [m, rad]."""
+
+_STRAINED = 10.0
+"""Faces whose link the others contradict by so many deviations are not of one door."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +113,10 @@ class ExploredBuilding:
         self.rooms[number] = room
         self.links += new
         self._solve()
+        if strained := [link for link in new if np.abs(self._residual(link)).max() > _STRAINED]:
+            new = [link for link in new if link not in strained]
+            self.links = [link for link in self.links if link not in strained]
+            self._solve()
         driven = {frozenset((link.first, link.second)) for link in self.links if link.doors is None}
         for link in new:
             if frozenset((link.first, link.second)) not in driven:
@@ -168,6 +175,9 @@ class ExploredBuilding:
         floor = self.rooms[room].structure.floor_height
         beyond = np.array([*way.line.at(_BEYOND), floor + 1.0])
         return self.room_at(transformed(beyond[None], self.world_from_room[room])[0]) is not None
+
+    def _residual(self, link: Link) -> NDArray[np.float64]:
+        return residual(link, self.world_from_room[link.first], self.world_from_room[link.second])
 
     def _solve(self) -> None:
         self.world_from_room |= solve(self._anchors, self.links)

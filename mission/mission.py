@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Literal, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from detector.detect import detect_doors
 from mission.config import MissionConfig
@@ -66,6 +67,7 @@ class Mission:
         self._building = ExploredBuilding(config.links)
         self._traveller = Traveller(self._mopad, self._building, self._surveyor, self._footprint, config.navigation)
         self._walls: dict[int, tuple[JudgedWall, ...]] = {}
+        self._compared_at: dict[int, Pose] = {}
         self._rooms = 0
 
     def __enter__(self) -> Self:
@@ -210,7 +212,6 @@ class Mission:
                 robot_height=self._config.navigation.grid.robot_height,
                 parameters=self._config.navigation.exits,
             )
-            before = dict(self._building.world_from_room)
             self._building.complete(CompletedRoom(room, structure, faces, tuple(exits)))
             self._walls[room.number] = judged(results)
         del results
@@ -222,21 +223,32 @@ class Mission:
             exits=tuple(way.face.door_id for way in exits),
             refused=tuple((face.door_id, why) for face, why in refused),
         )
-        for number, pose in self._building.world_from_room.items():
-            if number == room.number or not np.allclose(pose, before[number], atol=MOVED):
+        for number in self._building.rooms:
+            if self._has_moved(number):
                 yield self._evaluated(number)
+
+    def _has_moved(self, number: int) -> bool:
+        """Whether a room lies elsewhere than where its doors were compared with the true ones."""
+        if number not in self._compared_at:
+            return True
+        corners = self._outline(number, self._building.world_from_room[number])
+        return bool(np.abs(corners - self._outline(number, self._compared_at[number])).max() > MOVED)
+
+    def _outline(self, number: int, world_from_room: Pose) -> NDArray[np.float64]:
+        """(P, 2) of a room's floor in the world [m]."""
+        polygon = self._building.rooms[number].structure.polygon
+        in_room = np.column_stack([polygon, np.zeros(len(polygon))])
+        return np.asarray(transformed(in_room, world_from_room)[:, :2], float)
 
     def _evaluated(self, number: int) -> DoorsEvaluated:
         """A room's doors, where they lie by now, beside the true ones."""
         with self._stopwatch("evaluate"):
-            world_from_room = self._building.world_from_room[number]
-            polygon = self._building.rooms[number].structure.polygon
-            in_room = np.column_stack([polygon, np.zeros(len(polygon))])
+            world_from_room = self._compared_at[number] = self._building.world_from_room[number]
             doors, missed = evaluate(
                 placed(self._walls[number], world_from_room),
                 self._scene.true_doors(),
                 room=number,
-                outline=np.asarray(transformed(in_room, world_from_room)[:, :2], float),
+                outline=self._outline(number, world_from_room),
             )
         evaluated: DoorsEvaluated = self._surveyor.event(DoorsEvaluated, room=number, doors=doors, missed=missed)
         return evaluated

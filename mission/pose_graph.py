@@ -79,7 +79,7 @@ def solve(anchors: Mapping[int, Anchor], links: Sequence[Link]) -> dict[int, Pos
             [[anchors[r].deviation, anchors[r].deviation, LEVEL, anchors[r].turn_deviation] for r in free]
         )
         pulls = [(motion.reshape(-1, 4) / deviations).ravel()]
-        pulls += [_residual(link, where[link.first], where[link.second]) for link in links]
+        pulls += [residual(link, where[link.first], where[link.second]) for link in links]
         return np.concatenate(pulls)
 
     found = least_squares(residuals, np.zeros(4 * len(free)), method="lm")
@@ -99,7 +99,7 @@ def _moved(place: Floats, x: float, y: float, z: float, turn: float) -> Pose:
     return pose
 
 
-def _residual(link: Link, world_from_first: Pose, world_from_second: Pose) -> Floats:
+def residual(link: Link, world_from_first: Pose, world_from_second: Pose) -> Floats:
     """(4,) what the link says otherwise, in its own deviations."""
     first_from_second = inverted(world_from_first) @ world_from_second
     off = first_from_second[:3, :3] @ link.in_second + first_from_second[:3, 3] - link.in_first

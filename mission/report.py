@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -54,6 +55,8 @@ class RoomReport:
     """Through which door."""
     exits: tuple[str, ...] = ()
     """Doors that it could drive through."""
+    wall_clock: float = 0.0
+    """From its entry until its doors were judged for the first time [s]."""
     done: bool = False
     """Whether its doors were judged; what lies behind a door may turn out to be no room."""
 
@@ -74,6 +77,7 @@ class Report:
     """(4, 4) of each room, as far as is known."""
     contacts: int = 0
     """Legs that ended at a touch."""
+    _entered: float = 0.0
 
     def handle(self, event: Event) -> None:
         """Take one event."""
@@ -81,6 +85,7 @@ class Report:
         match event:
             case RoomEntered():
                 self.rooms[event.room] = room
+                self._entered = perf_counter()
                 room.how, room.door = event.how, event.door
                 self.world_from_room[event.room] = event.world_from_room
             case RoomsTied():
@@ -106,6 +111,8 @@ class Report:
             case DoorsDetected():
                 room.walls = len(event.results)
             case DoorsEvaluated():
+                if not room.done:
+                    room.wall_clock = perf_counter() - self._entered
                 room.doors, room.missed, room.done = event.doors, event.missed, True
             case MissionFinished():
                 self.finished = event
@@ -186,6 +193,7 @@ class Report:
                     "done": room.done,
                     "exits": list(room.exits),
                     "scans": room.scans,
+                    "wall_clock_seconds": round(room.wall_clock, 3),
                     "coverage": _rounded(room.coverage),
                     "stop_reason": room.stop_reason,
                     "missed": list(room.missed),

@@ -66,6 +66,8 @@ class Traveller:
             failed = f"no place to turn is in sight behind door {door}"
             tied = yield from surveyor.scan_threshold(room.explored, beyond)
             landing = self._landing(beyond.grid(floor), way.line) if tied else None
+            if landing is not None and (known := self._room_at(here, landing)) is not None:
+                landing, failed = None, f"door {door} leads into room {known}, which is done"
             if landing is not None and (yield from surveyor.drive(beyond, self._straight_to(landing), floor)):
                 doorway = Doorway(door, {here: way.line, beyond.number: way.line.reversed()})
                 self._building.pass_through(doorway, here, beyond.number, self._mopad.world_from_base[:3, 3])
@@ -110,6 +112,12 @@ class Traveller:
             mopad.believe(inverted(here_from_there) @ mopad.world_from_base)
             here = self._surveyor.room = there
         return here
+
+    def _room_at(self, here: int, place: Place) -> int | None:
+        """The room that is done and in which a place of another room's frame lies."""
+        building = self._building
+        over_floor = np.array([[*place, building.rooms[here].structure.floor_height + 1.0]])
+        return building.room_at(transformed(over_floor, building.world_from_room[here])[0])
 
     def _come_before(self, here: int, line: CentreLine) -> Generator[Event, None, bool]:
         """Drive to where the robot can turn towards a doorway; a way that ends early leads to another.

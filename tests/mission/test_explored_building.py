@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -87,3 +88,14 @@ def test_a_room_that_was_none_is_forgotten_with_its_links() -> None:
     building.pass_through(doorway, 1, 2, np.array([6.0, 2.0, 0.0]))
     building.drop(2)
     assert (building.links, building.doorways, set(building.world_from_room)) == ([], [], {1})
+
+
+def test_a_pair_of_doors_that_scans_contradict_is_none() -> None:
+    building = row(1)
+    line = exit_of(1, 1).line
+    building.pass_through(Doorway("1.1-a", {1: line, 2: line.reversed()}), 1, 2, np.array([6.0, 2.0, 0.0]))
+    there = exit_of(2, -1)
+    astray = replace(there, face=replace(there.face, wall=wall(PITCH, 0.4, np.pi / 2)))  # 40 cm along the wall
+    building.complete(completed(2, astray))
+    assert [link for link in building.links if link.doors] == []
+    np.testing.assert_allclose(building.world_from_room[2], np.eye(4), atol=1e-6)
