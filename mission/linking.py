@@ -23,7 +23,9 @@ class LinkParameters(Parameters):
     max_offset: float = Field(default=0.5, gt=0, le=3, description="between the faces' middles, along the wall [m]")
     max_turn: float = Field(default=math.radians(8), gt=0, le=0.5, description="between the faces' planes [rad]")
     max_thickness: float = Field(default=0.7, gt=0, le=3, description="of a wall between two rooms [m]")
-    max_size_difference: float = Field(default=0.12, gt=0, le=0.5, description="of the faces' widths and heights [m]")
+    max_size_difference: float = Field(
+        default=0.2, gt=0, le=0.5, description="of the faces' widths and heights: one may have its frame with it [m]"
+    )
     thickness: float = Field(default=0.15, gt=0, le=1, description="of a wall that nothing tells the thickness of [m]")
     thickness_deviation: float = Field(default=0.05, gt=0, le=1, description="1 sigma of it [m]")
     leaf_thickness: float = Field(default=0.04, gt=0, le=0.2, description="of a leaf; inner doors: 39 to 42 mm [m]")
