@@ -213,7 +213,7 @@ def overshoot(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
     """(N,) larger share of edges where the top is drawn out beyond its corners; 1 where this cannot be seen.
 
     The joints of tiles go on there, if faintly, and planks have none; the head of a door ends. At the end of the wall
-    it ends, too.
+    everything does.
     """
     reach = round(OVERSHOOT / scene.merged.pixel_size)
     top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
@@ -226,6 +226,7 @@ def overshoot(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
         first, last = (np.clip(x, 0, scene.visible.shape[1]) for x in (first, last))
         span = np.stack([top, first, top + 1, last], axis=1)
         seen = box_sums(visible, span)
-        drawn = np.where(seen >= END_VISIBLE * (last - first), box_sums(level, span) / np.maximum(seen, 1), 1.0)
-        worst = np.maximum(worst, np.where(last - first < reach / 3, 0.0, drawn))
+        worst = np.maximum(
+            worst, np.where(seen >= END_VISIBLE * reach, box_sums(level, span) / np.maximum(seen, 1), 1.0)
+        )
     return worst
