@@ -33,7 +33,6 @@ examples:
   python -m mission bench building --seed 3 --set scanner.pattern=draft
 """
 
-
 PLANNERS_EXAMPLES = """\
 examples:
   python -m mission bench planners
@@ -256,10 +255,7 @@ def _add_building(benches: argparse._SubParsersAction[OneLineParser]) -> None:
     )
     building.add_argument("--seed", type=_seed, default=0, metavar="N", help="of all noise (default: 0)")
     building.add_argument("--out", metavar="DIR", help="folder for the results (default: runs/bench-building-<n>)")
-    building.add_argument("--config", type=Path, metavar="FILE.toml", help="parameters, a table a stage")
-    building.add_argument(
-        "--set", action="append", default=[], metavar="KEY=VALUE", help="one parameter, as for run; may be repeated"
-    )
+    _add_configuration(building)
 
 
 def _seed(text: str) -> int:

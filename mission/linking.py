@@ -156,18 +156,10 @@ def _offset(
     a, b = one.door.rectangle, other.door.rectangle
     if max(abs(a.width - b.width), abs(a.height - b.height)) > parameters.max_size_difference:
         return None
-    (normal, along, normal_b), (head, head_b) = (
-        np.concatenate(
-            [
-                rotated(np.stack([one.normal, one.wall.u]), world_from_room[one.room]),
-                rotated(other.normal[None], world_from_room[other.room]),
-            ]
-        ),
-        (
-            transformed(one.head[None], world_from_room[one.room])[0],
-            transformed(other.head[None], world_from_room[other.room])[0],
-        ),
-    )
+    world_from_one, world_from_other = world_from_room[one.room], world_from_room[other.room]
+    normal, along = rotated(np.stack([one.normal, one.wall.u]), world_from_one)
+    (normal_b,) = rotated(other.normal[None], world_from_other)
+    (head,), (head_b,) = transformed(one.head[None], world_from_one), transformed(other.head[None], world_from_other)
     between = head_b - head
     behind, offset = -float(normal @ between), abs(float(along @ between))
     if -float(normal @ normal_b) < np.cos(parameters.max_turn) or offset > parameters.max_offset:

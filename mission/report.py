@@ -135,12 +135,9 @@ class Report:
             "links": [_link(link) for link in self.links if link.doors],
         }
 
-    def _pose_errors(self) -> list[PoseError]:
-        return pose_errors(self.registrations, self.world_from_room)
-
     def pose_metrics(self) -> dict[str, float | None]:
         """Errors of the registered scans: within their rooms, and over the building."""
-        errors = self._pose_errors()
+        errors = pose_errors(self.registrations, self.world_from_room)
         if not errors:
             return dict.fromkeys(("within_room_median_m", "within_room_max_m", "max_m", "max_deg"))
         within = [error.within_room for error in errors]
@@ -177,7 +174,7 @@ class Report:
             stage_seconds: Wall clock time of each stage [s].
             wall_clock: Of the whole program so far [s].
         """
-        errors = {error.scan: error for error in self._pose_errors()}
+        errors = {error.scan: error for error in pose_errors(self.registrations, self.world_from_room)}
         return {
             "schema": SCHEMA,
             "scene": self.started.scene if self.started else None,
