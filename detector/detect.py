@@ -25,7 +25,8 @@ from detector.orthoimage import crop, image_shape, mark, nearest, orthoimage, sa
 from detector.outline import settle_sides
 from detector.parallel import each
 from detector.parameters import DetectorParameters
-from detector.result import Mask, Orthoimage, WallResult
+from detector.pivot import hinge_side
+from detector.result import Door, Mask, Orthoimage, WallResult
 from detector.room import DetectorError, Room, View, Wall
 from detector.undercut import with_lower_edge
 from detector.wall_area import find_wall_area
@@ -81,6 +82,7 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
     with clock("angles"):
         bare = replace(merged, depth=nearest(merged.depth, ~scene.hidden))  # a leaf goes on behind furniture
         doors = [describe_door(r, bare, seen, look.around, wall.height, parameters) for r in rectangles]
+        doors = [_at_hinge(d, look) for d in doors] if parameters.settle_sides else doors
         doors = [with_lower_edge(d, look.low, bare, wall.height, floor, parameters) for d in doors]
         doors = judged(doors, search, scene, wall.height)
     return WallResult(
@@ -95,6 +97,13 @@ def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallR
         doors=tuple(join_leaves(doors)),
         stage_seconds=tuple(clock.seconds),
     )
+
+
+def _at_hinge(door: Door, look: Look) -> Door:
+    """A single door with its hinge side where its leaf tells."""
+    if door.kind != "single":
+        return door
+    return replace(door, rectangle=hinge_side(door.rectangle, door.leaves[0], look.around, look.cameras))
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from detector.angle import closed_depth
 from detector.candidates import Scene
+from detector.frame import without_frame
 from detector.orthoimage import column_medians
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, Rectangle
@@ -34,6 +35,10 @@ HALF_GAP = 0.0015
 """From the middle of the gap between leaf and frame to the leaf [m]; the gap is 2 to 4 mm (DIN 18101)."""
 BORDER_PX = 3
 """Pixels next to the edge that must be hole on one side and face on the other."""
+REVEAL_PX = 3
+"""So many pixels between them may be neither: beams on the reveal just behind the face."""
+NEITHER = 0.5
+"""A pixel is neither where less than this share of it is one of them."""
 
 
 def settle_sides(
@@ -52,17 +57,14 @@ def settle_sides(
         return rectangles
     face, values = scene.face & ~passed, components(scene.merged, parameters)
     nothing = np.zeros_like(passed)
-    return tuple(
-        _settled(
-            r,
-            nothing if _is_shallow(r, scene.merged, height, parameters) else passed,
-            face,
-            values,
-            scene.merged,
-            height,
-        )
-        for r in rectangles
-    )
+
+    def settled(found: Rectangle) -> Rectangle:
+        if _is_shallow(found, scene.merged, height, parameters):
+            leaf = without_frame(found, scene.merged, height)
+            return _settled(leaf, nothing, face, values, scene.merged, height)
+        return _settled(found, passed, face, values, scene.merged, height)
+
+    return tuple(settled(rectangle) for rectangle in rectangles)
 
 
 def _is_shallow(rectangle: Rectangle, merged: Orthoimage, height: float, parameters: DetectorParameters) -> bool:
@@ -126,10 +128,17 @@ def _edge(hole: NDArray, face: NDArray, position: float, reach: int, otherwise: 
     """
     borders = range(max(BORDER_PX, round(position) - reach), min(len(hole) - BORDER_PX, round(position) + reach + 1))
     for border in borders:
-        inside, outside = hole[border : border + BORDER_PX], face[border - 1 - BORDER_PX : border - 1]
-        if inside.min() >= ABSENT and len(outside) and outside.min() >= ABSENT:
+        if hole[border : border + BORDER_PX].min() < ABSENT:
+            continue
+        for end in range(
+            border - 1, max(border - 2 - REVEAL_PX, BORDER_PX - 1), -1
+        ):  # of the face, as far as it is sure
+            if face[end - BORDER_PX : end].min() < ABSENT:
+                continue
+            if (hole[end:border] + face[end:border]).max() < NEITHER:  # beams met the reveal; the face ends before it
+                return float(end - 0.5 + face[end:border].sum())
             # a beam passed somewhere in the outermost pixel; before it, one may be hole in part of the rows
-            return border + 0.5 - float(hole[border - 1])
+            return border + 0.5 - float(hole[border - 1]) if end == border - 1 else otherwise
     return otherwise
 
 

@@ -26,6 +26,7 @@ class LinkParameters(Parameters):
     max_size_difference: float = Field(
         default=0.2, gt=0, le=0.5, description="of the faces' widths and heights: one may have its frame with it [m]"
     )
+    frame: float = Field(default=0.03, gt=0, le=0.5, description="faces that differ by more: one has its frame [m]")
     thickness: float = Field(default=0.15, gt=0, le=1, description="of a wall that nothing tells the thickness of [m]")
     thickness_deviation: float = Field(default=0.05, gt=0, le=1, description="1 sigma of it [m]")
     leaf_thickness: float = Field(default=0.04, gt=0, le=0.2, description="of a leaf; inner doors: 39 to 42 mm [m]")
@@ -69,10 +70,13 @@ def door_link(first: DoorFace, second: DoorFace, parameters: LinkParameters) -> 
     """How the second face's room lies to the first's: walls parallel, doorways opposite each other.
 
     A wall is as thick as both recesses of a closed leaf and the leaf itself; where the leaf stands open, other links
-    must tell, and the usual thickness is only a hint.
+    must tell, and the usual thickness is only a hint. So it is where one face was found with its frame, which stands
+    out of the leaf; its middle is then as unsure as the sizes differ.
     """
     recesses = first.recess + second.recess
-    known = bool(np.isfinite(recesses))
+    one, other = first.door.rectangle, second.door.rectangle
+    narrower, lower = abs(one.width - other.width), abs(one.height - other.height)
+    known = bool(np.isfinite(recesses)) and narrower < parameters.frame
     thickness = recesses + parameters.leaf_thickness if known else parameters.thickness
     out, along = -first.normal, first.wall.u
     return Link(
@@ -84,9 +88,9 @@ def door_link(first: DoorFace, second: DoorFace, parameters: LinkParameters) -> 
         axes=np.stack([along, out, [0.0, 0.0, 1.0]]),
         deviations=np.array(
             [
-                parameters.edge_deviation,
+                parameters.edge_deviation + max(narrower - parameters.frame, 0.0) / 2,
                 parameters.leaf_deviation if known else parameters.thickness_deviation,
-                2 * parameters.edge_deviation,
+                2 * parameters.edge_deviation + max(lower - parameters.frame, 0.0),
             ]
         ),
         turn_deviation=parameters.turn_deviation,

@@ -70,6 +70,15 @@ def test_the_side_of_a_hole_lies_within_the_outermost_pixel_that_a_beam_passed()
     assert (settled.left, settled.right, settled.top) == pytest.approx((1.0065, 1.8935, 1.9935), abs=1e-6)
 
 
+@pytest.mark.parametrize("hidden", [1, 3])
+def test_where_beams_meet_the_reveal_the_face_ends_at_its_corner(hidden: int) -> None:
+    # the hole of beams begins 1 or 3 cm late; the corner lies within the last pixel of the face, and half the gap more
+    passed, face = hole(), ~hole()
+    passed[:, 100 : 100 + hidden] = False
+    settled = settle(DOORWAY, passed, face)
+    assert (settled.left, settled.right) == pytest.approx((0.9965, 1.8935), abs=1e-6)
+
+
 @pytest.mark.parametrize("found", [0.985, 1.0, 1.015])
 def test_an_edge_between_pixels_is_found_between_them(found: float) -> None:
     # leaf from u = 1.003: the pixel from 1.00 to 1.01 is three parts wall (200) and seven parts leaf (100): 130

@@ -73,6 +73,18 @@ def test_an_open_door_says_little_about_the_thickness_of_its_wall() -> None:
     assert found[2][1, 3] == pytest.approx(-0.0397, abs=2e-4)
 
 
+def test_a_face_that_was_found_with_its_frame_says_little_about_thickness_and_middle() -> None:
+    # 8 cm wider and 4 cm higher; 3 cm are within what two sides of a door differ by
+    here, there = both_sides()
+    r = there.door.rectangle
+    framed = replace(
+        there, door=replace(there.door, rectangle=Rectangle(r.left - 0.04, 0.0, r.right + 0.04, r.top + 0.04))
+    )
+    link, plain = door_link(here, framed, PARAMETERS), door_link(here, there, PARAMETERS)
+    assert link.deviations[1] == PARAMETERS.thickness_deviation
+    np.testing.assert_allclose(link.deviations[[0, 2]] - plain.deviations[[0, 2]], [0.025, 0.01], atol=1e-12)
+
+
 def test_what_is_known_better_moves_less() -> None:
     # Two links measure one room 0 and 10 mm along x, with 1 and 3 mm of deviation: weights 9 to 1, 1 mm.
     links = [
