@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from detector.angle import total_least_squares
 from detector.result import Leaf, Rectangle
 
-LEAST_ANGLE, LARGEST_ANGLE = np.deg2rad(70.0), np.deg2rad(115.0)
-"""Between these a hinge 1 cm behind the wall's face moves the side by less than 5 mm."""
+LEAST_ANGLE, LARGEST_ANGLE = np.deg2rad(85.0), np.deg2rad(115.0)
+"""Below, the leaf's edge lies well behind the wall's face; above, a hinge 1 cm behind it moves the side by 5 mm."""
 THICKNESS = (0.02, 0.08)
 """Of leaves [m]."""
 USUAL_THICKNESS = 0.04

@@ -8,8 +8,8 @@ import numpy as np
 
 from sim.rays import Rays
 
-_PASSAGE = 0.6
-"""Free way needed on both sides of a doorway; a wardrobe's back is nearer [m]."""
+_PASSAGE = 0.75
+"""Free way needed on both sides of a doorway; the back of a wardrobe is nearer to any turn of its door [m]."""
 _WALL_DEPTH = 0.35
 """A leaf lies at most this far from the faces of its wall [m]."""
 _BESIDE = (0.03, 0.08, 0.15)

@@ -29,7 +29,7 @@ def found(face: np.ndarray, angle_deg: float, opens: Literal["inward", "outward"
     return Leaf("left", float(np.deg2rad(angle_deg)), 1e-4, opens, face[:, [0, 2]])
 
 
-@pytest.mark.parametrize("angle_deg", [80.0, 90.0, 100.0])
+@pytest.mark.parametrize("angle_deg", [86.0, 90.0, 105.0])
 @pytest.mark.parametrize("side", [0.993, 1.0, 1.008])
 @pytest.mark.parametrize("fitted_inner", [False, True])
 def test_both_faces_of_a_leaf_tell_the_hinge_side_to_a_millimetre(
@@ -66,7 +66,7 @@ def test_a_side_well_away_from_the_leaf_is_kept() -> None:
     assert hinge_side(doorway, found(faces[0], 90), np.concatenate(faces), [BEFORE_IT]) == doorway
 
 
-@pytest.mark.parametrize(("angle_deg", "opens"), [(45.0, "inward"), (90.0, "outward")])
+@pytest.mark.parametrize(("angle_deg", "opens"), [(75.0, "inward"), (90.0, "outward")])
 def test_leaves_that_do_not_stand_in_the_room_at_the_wall_tell_nothing(
     angle_deg: float, opens: Literal["inward", "outward"]
 ) -> None:
