@@ -97,12 +97,15 @@ def _passable(rays: Rays, foot: NDArray[np.float64], normal: NDArray[np.float64]
 def _standing(rays: Rays, start: NDArray[np.float64]) -> NDArray[np.float64]:
     """(P, 3) the places of a raster that the robot gets to from a start (3,) and where it can turn."""
     found = {(0, 0): start}
-    waiting = [(0, 0)]
+    tried, waiting = {(0, 0)}, [(0, 0)]
     while waiting and len(found) < _MOST_PLACES:
         row, column = waiting.pop()
         for step in ((row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)):
+            if step in tried:
+                continue
+            tried.add(step)
             place = start + RASTER * np.array([*step, 0.0])
-            if step not in found and _can_stand(rays, place):
+            if _can_stand(rays, place):
                 found[step] = place
                 waiting.append(step)
     return np.array(list(found.values()))
