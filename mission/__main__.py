@@ -40,6 +40,16 @@ examples:
   python -m mission bench planners --scene my_flat.xml --planner nbs --planner frontier --jobs 2
   python -m mission bench planners --set planning.travel_cost=0.1 --set planning.max_scans=6
 """
+
+SPEED_EXAMPLES = """\
+examples:
+  python -m mission bench speed
+  python -m mission bench speed --part scans --repeats 9
+  python -m mission bench speed --json > speed.json
+"""
+SPEED_PARTS = ("scans", "photographs", "detector", "missions", "start-up")
+"""As in `mission.bench.speed.command.PARTS`."""
+
 COVERAGE_HELP = """\
 coverage is the share of a room's visible structure that its scans have a return of: of all 10 cm cells of its walls,
 floor and ceiling that an exact scanner sees from any place in the room where the robot can stand. It is computed from
@@ -69,6 +79,10 @@ def _bench(options: argparse.Namespace) -> int:
         from mission.bench.planners.command import bench_planners
 
         return bench_planners(options)
+    if options.bench == "speed":
+        from mission.bench.speed.command import bench_speed
+
+        return bench_speed(options)
     if options.bench == "building":
         from mission.bench.building.command import bench_building
 
@@ -158,6 +172,7 @@ def parser() -> argparse.ArgumentParser:
     _add_walls(benches)
     _add_building(benches)
     _add_planners(benches)
+    _add_speed(benches)
     return commands
 
 
@@ -221,6 +236,25 @@ def _add_planners(benches: argparse._SubParsersAction[OneLineParser]) -> None:
     planners.add_argument("--out", metavar="DIR", help="folder for the results (default: runs/bench-planners-<n>)")
     _add_workers(planners)
     _add_configuration(planners)
+
+
+def _add_speed(benches: argparse._SubParsersAction[OneLineParser]) -> None:
+    speed = benches.add_parser(
+        "speed",
+        help="beside the renderer alone, MuJoCo's rays, Open3D and mujoco-lidar",
+        description="Time scans, photographs, detector, missions and start-up, each in turns with what it is compared "
+        "with. The floor is what MuJoCo's renderer needs for the frames that the sensors are shown. Open3D and "
+        "mujoco-lidar take part where they are installed.",
+        epilog=SPEED_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    speed.add_argument("--part", action="append", choices=SPEED_PARTS, help="only this; may be repeated")
+    speed.add_argument(
+        "--repeats", type=_positive, default=5, metavar="N", help="measurements of each, after a first (default: 5)"
+    )
+    speed.add_argument("--out", metavar="DIR", help="folder for the results (default: runs/bench-speed-<n>)")
+    speed.add_argument("--json", action="store_true", help="print result.json and nothing else")
 
 
 def _add_workers(bench: OneLineParser) -> None:

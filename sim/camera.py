@@ -132,6 +132,23 @@ class Camera:
             gain = _gain(exposed)
             return tuple(pool.map(lambda k: self._develop(exposed[k], gain, poses[k], int(seeds[k])), range(shots)))
 
+    def bare_renders(
+        self, data: mujoco.MjData, world_from_scanner: NDArray[np.float64], *, colours_only: bool = False
+    ) -> None:
+        """Render the pictures that `photograph` works on, and throw them away: what none can do without.
+
+        Args:
+            data: state of the world.
+            world_from_scanner: (4, 4) pose of the scanner under the camera.
+            colours_only: leave out the depth from the lens and from the flash.
+        """
+        for k in range(self.parameters.shots):
+            pose = world_from_scanner @ self._scanner_from_camera(2 * np.pi * k / self.parameters.shots)
+            if colours_only:
+                self._renderer.albedo(data, self._view(pose, margin=(0, 0)))
+            else:
+                self._render(data, pose)
+
     def _scanner_from_camera(self, azimuth: float) -> NDArray[np.float64]:
         pose = looking_along(azimuth)
         pose[2, 3] = self.parameters.rise

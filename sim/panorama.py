@@ -72,6 +72,19 @@ def cast_panorama(
     return inverse_range, values
 
 
+def bare_renders(
+    renderer: Renderer,
+    data: mujoco.MjData,
+    world_from_scanner: NDArray[np.float64],
+    elevations: NDArray[np.float64],
+    azimuths: NDArray[np.float64],
+) -> None:
+    """Render the pictures that `cast_panorama` reads, and throw them away: what no implementation can do without."""
+    wedge = _wedge(elevations.tobytes(), azimuths.tobytes())
+    for number in range(WEDGES):
+        renderer.depth(data, wedge.view(world_from_scanner, number))
+
+
 def directions(elevations: NDArray[np.float64], azimuths: NDArray[np.float64]) -> NDArray[np.float64]:
     """(N, 3) unit vectors, x forward and z up, of (N,) elevations and azimuths [rad]."""
     level = np.cos(elevations)

@@ -1,0 +1,1 @@
+"""How fast we are, beside the renderer alone and beside what else a user could pick."""
