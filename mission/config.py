@@ -19,11 +19,11 @@ from mission.registration import RegistrationParameters
 from mission.samples import SampleParameters
 from mission.structure import StructureParameters
 from mission.voxels import VoxelParameters
-from sim.camera import CameraParameters
-from sim.hokuyo import HokuyoParameters
+from sim.guardian import RobotParameters
+from sim.laser_scan import HokuyoParameters
 from sim.parameters import Parameters
-from sim.robot import RobotParameters
-from sim.scanner import ScannerParameters
+from sim.photo import CameraParameters
+from sim.scan import ScannerParameters
 
 
 class MissionConfig(Parameters):

@@ -24,11 +24,11 @@ if TYPE_CHECKING:  # events are plain data: making one must not import mujoco, o
     from mission.pose_graph import Link
     from mission.structure import Structure
     from mission.voxels import VoxelModel
-    from sim.camera import Photo
-    from sim.doors import DoorTruth
-    from sim.hokuyo import LaserScan
-    from sim.robot import RobotShape
-    from sim.scanner import Scan
+    from sim.door_truth import DoorTruth
+    from sim.guardian import RobotShape
+    from sim.laser_scan import LaserScan
+    from sim.photo import Photo
+    from sim.scan import Scan
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

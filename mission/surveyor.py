@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,16 +28,18 @@ from mission.events import (
 from mission.explored_room import ExploredRoom
 from mission.joints import opening
 from mission.localisation import localise
-from mission.mopad import Mopad
 from mission.registration import Registration
 from mission.rigid import Pose, inverted
 from mission.samples import ScanSample, place, sample_scan
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
 from mission.voxels import VoxelModel
-from sim.hokuyo import LaserScan
-from sim.scanner import Scan
-from sim.scene import Scene
+from sim.laser_scan import LaserScan
+from sim.scan import Scan
+
+if TYPE_CHECKING:
+    from mission.mopad import Mopad
+    from sim.scene import Scene
 
 MAX_DETOURS = 3
 """So many ways in a row may end before their goal; then the room is done with what is there."""

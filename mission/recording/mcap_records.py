@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from mission.candidates import ScanCandidate
     from mission.evaluation import DoorEvaluation
     from mission.pose_graph import Link
-    from sim.robot import RobotShape
+    from sim.guardian import RobotShape
 
 NAN = float("nan")
 

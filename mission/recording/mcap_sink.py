@@ -49,7 +49,7 @@ from mission.recording.room_frames import RoomFrames
 from mission.recording.sentences import level, sentence
 
 if TYPE_CHECKING:
-    from sim.hokuyo import LaserScan
+    from sim.laser_scan import LaserScan
 
 EPOCH = 946_684_800_000_000_000
 """Mission time zero on the clock of the file: 2000-01-01 00:00:00 UTC [ns]. A mission has no date of its own."""

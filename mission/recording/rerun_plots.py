@@ -27,7 +27,7 @@ from mission.recording.entities import child
 from mission.recording.sentences import level, sentence
 
 if TYPE_CHECKING:
-    from sim.doors import DoorTruth
+    from sim.door_truth import DoorTruth
 
 ACTIVITY_COLOURS = {
     "start": (120, 120, 120),

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mission import events
-from sim.hokuyo import LaserScan
-from sim.robot import RobotShape
-from sim.scanner import Scan
+from sim.guardian import RobotShape
+from sim.laser_scan import LaserScan
+from sim.scan import Scan
 from tests.mission import recording_room as made
 
 SECOND = 1_000_000_000
