@@ -23,7 +23,7 @@ from mission.events import (
     RoomEntered,
     RoomsTied,
 )
-from mission.exits import find_exits
+from mission.exits import Exit, find_exits
 from mission.explored_building import CompletedRoom, ExploredBuilding
 from mission.explored_room import ExploredRoom
 from mission.grid import Footprint
@@ -114,16 +114,18 @@ class Mission:
             versions=versions(),
             world_from_base=self._mopad.world_from_base,
             robot=robot.shape(),
+            footprint=self._footprint,
             base_from_scanner=robot.base_from_scanner,
             true_doors=self._scene.true_doors(),
         )
         return started
 
-    def _entered(self, how: Literal["start", "door", "set down"], door: str | None = None) -> RoomEntered:
+    def _entered(self, how: Literal["start", "door", "set down"], way: Exit | None = None) -> RoomEntered:
         entered: RoomEntered = self._surveyor.event(
             RoomEntered,
             how=how,
-            door=door,
+            door=way.face.door_id if way else None,
+            before=way.face.room if way else None,
             world_from_room=self._building.world_from_room[self._surveyor.room],
             world_from_base=self._mopad.world_from_base,
             true_world_from_base=self._mopad.robot.true_world_from_base,
@@ -141,7 +143,7 @@ class Mission:
                 self._building.give_up(way)
                 continue
             self._rooms, here = beyond.number, beyond.number
-            yield self._entered("door", way.face.door_id)
+            yield self._entered("door", way)
             try:
                 yield from self._do(beyond)
             except MissionError as error:  # it leads out into the open, or to where nothing can be made out
@@ -244,11 +246,14 @@ class Mission:
         """A room's doors, where they lie by now, beside the true ones."""
         with self._stopwatch("evaluate"):
             world_from_room = self._compared_at[number] = self._building.world_from_room[number]
+            true_doors = self._scene.true_doors()
             doors, missed = evaluate(
                 placed(self._walls[number], world_from_room),
-                self._scene.true_doors(),
+                true_doors,
                 room=number,
                 outline=self._outline(number, world_from_room),
             )
-        evaluated: DoorsEvaluated = self._surveyor.event(DoorsEvaluated, room=number, doors=doors, missed=missed)
+        evaluated: DoorsEvaluated = self._surveyor.event(
+            DoorsEvaluated, room=number, doors=doors, missed=missed, true_doors=true_doors
+        )
         return evaluated

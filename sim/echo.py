@@ -131,4 +131,5 @@ def _round(values: NDArray[np.float32], steps: float) -> None:
     """To whole multiples of 1 / steps, in place."""
     values *= np.float32(steps)
     np.rint(values, out=values)
+    values += np.float32(0)  # there is no -0
     values /= np.float32(steps)
