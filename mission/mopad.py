@@ -72,6 +72,11 @@ class Mopad:
         return self.world_from_odometry @ self.robot.odometry
 
     @property
+    def world_from_scanner(self) -> Pose:
+        """Where the robot believes its scanner to be."""
+        return self.world_from_base @ self.robot.base_from_scanner
+
+    @property
     def true_world_from_scanner(self) -> Pose:
         """Where the scanner is."""
         return self.robot.true_world_from_base @ self.robot.base_from_scanner

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import IO, Any
 
@@ -21,7 +21,7 @@ from mission.events import Event, Photographed, Registered, Scanned
 from mission.recording.codec import decode
 from mission.recording.kinds import DERIVED, PARTS, RecordType
 from mission.recording.mcap_schemas import PACKAGE, message_class
-from mission.recording.mcap_topics import EVENT, FORMAT, PROFILE, RECORDED, topic_of_parts
+from mission.recording.mcap_topics import EVENT, FORMAT, PROFILE, RECORDED, topic_of, topic_of_parts
 from mission.recording.sentences import sentence
 
 MAGIC = b"\x89MCAP0\r\n"
@@ -46,8 +46,12 @@ class DamagedError(UsageError):
     """A recording ends early or is damaged; the events before it are good."""
 
 
-def read_events(path: Path) -> Iterator[Event]:
+def read_events(path: Path, *, without: Collection[type[Event]] = ()) -> Iterator[Event]:
     """Read a recording event by event.
+
+    Args:
+        path: The MCAP file.
+        without: Kinds of events to leave out; what they carry is not decoded.
 
     Raises:
         UsageError: There is no such file, or it is no recording of a mission.
@@ -57,7 +61,7 @@ def read_events(path: Path) -> Iterator[Event]:
     try:
         with path.open("rb") as file:
             check_magic(file, path)
-            for event in _Decoder(path).events(_records(file, path)):
+            for event in _Decoder(path, without).events(_records(file, path)):
                 last = event
                 yield event
     except OSError as error:
@@ -126,8 +130,9 @@ def _check_summary(path: Path, footer: Footer) -> None:
 class _Decoder:
     """Puts events together from the records of a file."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, without: Collection[type[Event]]) -> None:
         self._path = path
+        self._without = {topic_of(kind) for kind in without}
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
         self._classes: dict[int, Any] = {}
@@ -155,6 +160,8 @@ class _Decoder:
         if kind is None:
             if topic.startswith(EVENT):
                 raise UsageError(f"{self._path} has the unknown topic {topic}: it was recorded by another version")
+            return None
+        if topic in self._without or topic.rpartition("/")[0] in self._without:
             return None
         content = self._parsed(kind, message)
         decoded = self._decoded(kind, content, **self._recorded_apart(kind, content))
