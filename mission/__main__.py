@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
+from mission.recording_arguments import add_recording_commands
+
 EXAMPLES = """\
 examples:
   python -m mission run room.xml
@@ -66,12 +68,25 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         if options.command == "bench":
             return _bench(options)
+        if options.command != "run":
+            return _read(options)
         from mission.run import run  # imports mujoco, rerun and the rest: not needed for --help
 
         return run(options)
     except KeyboardInterrupt:
         print(f"interrupted before the {options.command} began", file=sys.stderr)
         return 130
+
+
+def _read(options: argparse.Namespace) -> int:
+    """Commands that read recordings."""
+    if options.command == "compare":
+        from mission.compare import compare
+
+        return compare(options)
+    from mission.replay import recover, replay
+
+    return replay(options) if options.command == "replay" else recover(options)
 
 
 def _bench(options: argparse.Namespace) -> int:
@@ -167,6 +182,7 @@ def parser() -> argparse.ArgumentParser:
     how = run.add_mutually_exclusive_group()
     how.add_argument("--quiet", action="store_true", help="say nothing but errors")
     how.add_argument("--json", action="store_true", help="print doors and summary as one JSON object, nothing else")
+    add_recording_commands(kinds)
     bench = kinds.add_parser("bench", help="measure how good the parts are", allow_abbrev=False)
     benches = bench.add_subparsers(title="benchmarks", dest="bench", required=True, metavar="NAME")
     _add_walls(benches)

@@ -16,8 +16,8 @@ from mission.errors import MissionError
 from mission.rigid import Pose, inverted
 
 if TYPE_CHECKING:
-    from sim.camera import Photo
-    from sim.scanner import Scan
+    from sim.photo import Photo
+    from sim.scan import Scan
 
 Mask = NDArray[np.bool_]
 Coordinates = NDArray[np.float32]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +20,11 @@ from mission.registration import RegistrationParameters
 from mission.samples import SampleParameters
 from mission.structure import StructureParameters
 from mission.voxels import VoxelParameters
-from sim.camera import CameraParameters
-from sim.hokuyo import HokuyoParameters
+from sim.guardian import RobotParameters
+from sim.laser_scan import HokuyoParameters
 from sim.parameters import Parameters
-from sim.robot import RobotParameters
-from sim.scanner import ScannerParameters
+from sim.photo import CameraParameters
+from sim.scan import ScannerParameters
 
 
 class MissionConfig(Parameters):
@@ -53,17 +54,30 @@ def read_config(path: Path | None, settings: Iterable[str] = ()) -> MissionConfi
     Raises:
         UsageError: A file, key or value that cannot be used.
     """
-    content = _read_toml(path) if path else {}
+    return changed_config(_read_toml(path) if path else {}, settings)
+
+
+def changed_config(content: Mapping[str, Any], settings: Iterable[str]) -> MissionConfig:
+    """Change a configuration by `key=value` settings.
+
+    Args:
+        content: A table a stage, as in summary.json under `config`; what is left out is as by default.
+        settings: As for `read_config`.
+
+    Raises:
+        UsageError: A file, key or value that cannot be used.
+    """
+    changed: dict[str, Any] = copy.deepcopy(dict(content))
     for setting in settings:
         key, value = _parse(setting)
-        table = content
+        table = changed
         for part in key[:-1]:
             table = table.setdefault(part, {})
             if not isinstance(table, dict):
                 raise UsageError(f"--set {setting}: {part!r} is a value, not a table")
         table[key[-1]] = value
     try:
-        return MissionConfig.model_validate(content)
+        return MissionConfig.model_validate(changed)
     except ValidationError as error:
         raise UsageError(f"configuration: {_first(error)}") from error
 

@@ -15,8 +15,8 @@ from mission.localisation import readings_in_base
 from mission.rigid import inverted
 
 if TYPE_CHECKING:
-    from sim.hokuyo import LaserScan
-    from sim.robot import RobotParameters
+    from sim.guardian import RobotParameters
+    from sim.laser_scan import LaserScan
 
 
 Outcome = Literal["arrived", "blocked", "stuck", "contact"]

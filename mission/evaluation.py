@@ -16,7 +16,7 @@ from mission.door_faces import door_name
 from mission.rigid import Pose, rotated, transformed
 
 if TYPE_CHECKING:
-    from sim.doors import DoorTruth
+    from sim.door_truth import DoorTruth
 
 SAME_DIRECTION = np.cos(np.radians(20.0))
 """A wall and a true doorway belong together if their normals are closer than this [cosine]."""

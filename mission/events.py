@@ -19,16 +19,16 @@ if TYPE_CHECKING:  # events are plain data: making one must not import mujoco, o
     from detector.room import View
     from mission.door_faces import DoorFace
     from mission.evaluation import DoorEvaluation
-    from mission.grid import OccupancyGrid
+    from mission.occupancy import Footprint, OccupancyGrid
     from mission.planning import Plan
     from mission.pose_graph import Link
     from mission.structure import Structure
     from mission.voxels import VoxelModel
-    from sim.camera import Photo
-    from sim.doors import DoorTruth
-    from sim.hokuyo import LaserScan
-    from sim.robot import RobotShape
-    from sim.scanner import Scan
+    from sim.door_truth import DoorTruth
+    from sim.guardian import RobotShape
+    from sim.laser_scan import LaserScan
+    from sim.photo import Photo
+    from sim.scan import Scan
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,6 +59,7 @@ class MissionStarted(Event):
     world_from_base: Pose
     """Start pose, known."""
     robot: RobotShape
+    footprint: Footprint
     base_from_scanner: Pose
     true_doors: tuple[DoorTruth, ...]
 
@@ -73,6 +74,8 @@ class RoomEntered(Event):
     how: Literal["start", "door", "set down"]
     door: str | None
     """The door that it came through, as the room before has it: "1.2-a"."""
+    before: int | None
+    """Number of the room before; None if it was set down."""
     world_from_room: Pose
     """Where the room's frame lies in the map, as far as is known."""
     world_from_base: Pose
@@ -211,6 +214,8 @@ class DoorsEvaluated(Event):
     """One a detected door."""
     missed: tuple[str, ...]
     """Names of the doors of this room that were not found."""
+    true_doors: tuple[DoorTruth, ...]
+    """All doors of the scene, as they stood."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

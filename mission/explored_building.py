@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,9 @@ _BEYOND = 0.8
 
 _FREE = (1.0, 0.5)
 """Of a room whose place follows from the links alone, 1 sigma [m, rad]."""
+
+_SET_DOWN = (0.03, 0.02)
+"""What the robot expects of an operator's word: 1 sigma of errors of up to 5 cm and 2 deg [m, rad]."""
 
 _STRAINED = 10.0
 """Faces whose link the others contradict by so many deviations are not of one door."""
@@ -75,6 +79,13 @@ class ExploredBuilding:
         """(4, 4) of every room that was entered."""
         self._given_up: list[Exit] = []
 
+    def begin(self, room: int, place: NDArray[np.float64], how: Literal["start", "set down"]) -> None:
+        """Begin a room at a place (3,) in its frame [m], told to the robot: exactly so at its start."""
+        if how == "start":
+            self.enter(room, place)
+        else:
+            self.enter(room, place, deviation=_SET_DOWN[0], turn_deviation=_SET_DOWN[1])
+
     def enter(
         self, room: int, place: NDArray[np.float64], *, deviation: float = 0.0, turn_deviation: float = 0.0
     ) -> None:
@@ -90,12 +101,16 @@ class ExploredBuilding:
         self.doorways = [doorway for doorway in self.doorways if room not in doorway.lines]
 
     def pass_through(self, doorway: Doorway, first: int, second: int, place: NDArray[np.float64]) -> None:
-        """Begin a room at a place (3,) in its frame [m], which the robot reached from another through a doorway.
+        """Begin a room at a place (3,) in its frame [m], which the robot reached from another through a doorway."""
+        self.enter_from(first, second, place)
+        self.doorways.append(doorway)
+
+    def enter_from(self, first: int, second: int, place: NDArray[np.float64]) -> None:
+        """Begin a room at a place (3,) in its frame [m], which the robot reached from another.
 
         Its scans were registered on the way, so both rooms share a frame until links correct it.
         """
         self.enter(second, place, deviation=_FREE[0], turn_deviation=_FREE[1])
-        self.doorways.append(doorway)
         self.links.append(scan_link(first, second, np.eye(4), place, self._parameters))
         self.world_from_room[second] = self.world_from_room[first].copy()
 

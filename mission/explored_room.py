@@ -22,7 +22,7 @@ from mission.rigid import Pose
 from mission.samples import PosedSample
 from mission.structure import Structure, find_structure
 from mission.voxels import VoxelModel, label_voxels
-from sim.hokuyo import LaserScan
+from sim.laser_scan import LaserScan
 
 
 @dataclass

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from mission.grid import Footprint
+from sim.guardian import RobotParameters
 from sim.parameters import Parameters
-from sim.robot import RobotParameters
 
 
 class DrivingParameters(Parameters):

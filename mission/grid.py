@@ -22,10 +22,10 @@ from pydantic import Field
 from mission.occupancy import Cell, Footprint, OccupancyGrid
 from mission.rigid import transformed
 from sim.parameters import Parameters
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 
 if TYPE_CHECKING:
-    from sim.hokuyo import LaserScan
+    from sim.laser_scan import LaserScan
 
 
 class GridParameters(Parameters):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sim.doors import DoorTruth
+    from sim.door_truth import DoorTruth
 
 
 def opening(door: DoorTruth) -> float:

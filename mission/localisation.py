@@ -20,7 +20,7 @@ from sim.parameters import Parameters
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-    from sim.hokuyo import LaserScan
+    from sim.laser_scan import LaserScan
 
 
 class LocalisationParameters(Parameters):

@@ -6,42 +6,27 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import Literal, Self
 
-import numpy as np
-from numpy.typing import NDArray
-
-from detector.detect import detect_doors
+from mission.completion import Completion
 from mission.config import MissionConfig
-from mission.door_faces import door_faces
 from mission.errors import MissionError
-from mission.evaluation import JudgedWall, evaluate, judged, placed
 from mission.events import (
-    DoorsDetected,
-    DoorsEvaluated,
     Event,
     MissionFinished,
     MissionStarted,
     RoomEntered,
-    RoomsTied,
 )
-from mission.exits import find_exits
-from mission.explored_building import CompletedRoom, ExploredBuilding
+from mission.exits import Exit
+from mission.explored_building import ExploredBuilding
 from mission.explored_room import ExploredRoom
 from mission.grid import Footprint
 from mission.mopad import Mopad
 from mission.registration import Registrar
-from mission.rigid import Pose, transformed
+from mission.rigid import Pose
 from mission.stopwatch import Stopwatch
-from mission.structure import Structure
 from mission.surveyor import Surveyor
 from mission.travelling import Traveller
 from mission.versions import versions
-from mission.voxels import VoxelModel, room_from
 from sim.scene import Scene
-
-SET_DOWN_DEVIATION, SET_DOWN_TURN_DEVIATION = 0.03, 0.02
-"""What the robot expects of an operator's word: 1 sigma of errors of up to 5 cm and 2 deg [m, rad]."""
-MOVED = 1e-3
-"""Rooms that links move by less are not judged again [m]."""
 
 
 class Mission:
@@ -66,8 +51,14 @@ class Mission:
         self._surveyor = Surveyor(scene, self._mopad, config, self._stopwatch, seed=seed)
         self._building = ExploredBuilding(config.links)
         self._traveller = Traveller(self._mopad, self._building, self._surveyor, self._footprint, config.navigation)
-        self._walls: dict[int, tuple[JudgedWall, ...]] = {}
-        self._compared_at: dict[int, Pose] = {}
+        self._completion = Completion(
+            self._building,
+            self._footprint,
+            config,
+            self._stopwatch,
+            event=self._surveyor.event,
+            true_doors=scene.true_doors,
+        )
         self._rooms = 0
 
     def __enter__(self) -> Self:
@@ -114,16 +105,18 @@ class Mission:
             versions=versions(),
             world_from_base=self._mopad.world_from_base,
             robot=robot.shape(),
+            footprint=self._footprint,
             base_from_scanner=robot.base_from_scanner,
             true_doors=self._scene.true_doors(),
         )
         return started
 
-    def _entered(self, how: Literal["start", "door", "set down"], door: str | None = None) -> RoomEntered:
+    def _entered(self, how: Literal["start", "door", "set down"], way: Exit | None = None) -> RoomEntered:
         entered: RoomEntered = self._surveyor.event(
             RoomEntered,
             how=how,
-            door=door,
+            door=way.face.door_id if way else None,
+            before=way.face.room if way else None,
             world_from_room=self._building.world_from_room[self._surveyor.room],
             world_from_base=self._mopad.world_from_base,
             true_world_from_base=self._mopad.robot.true_world_from_base,
@@ -141,7 +134,7 @@ class Mission:
                 self._building.give_up(way)
                 continue
             self._rooms, here = beyond.number, beyond.number
-            yield self._entered("door", way.face.door_id)
+            yield self._entered("door", way)
             try:
                 yield from self._do(beyond)
             except MissionError as error:  # it leads out into the open, or to where nothing can be made out
@@ -161,17 +154,17 @@ class Mission:
         """A room of which nothing is known yet."""
         return ExploredRoom(self._rooms + 1, self._footprint, self._config, Registrar(self._config.registration))
 
-    def _begin(self, how: Literal["start", "set down"], **deviations: float) -> tuple[ExploredRoom, RoomEntered]:
+    def _begin(self, how: Literal["start", "set down"]) -> tuple[ExploredRoom, RoomEntered]:
         """Begin a room where the robot stands."""
         room = self._next_room()
         self._rooms = self._surveyor.room = room.number
-        self._building.enter(room.number, self._mopad.world_from_base[:3, 3], **deviations)
+        self._building.begin(room.number, self._mopad.world_from_base[:3, 3], how)
         return room, self._entered(how)
 
     def _set_down(self, site: str, true_world_from_base: Pose) -> Iterator[Event]:
         """Have an operator carry the robot to where the scene says, who knows the place by eye only."""
         self._mopad.set_down(true_world_from_base)
-        room, entered = self._begin("set down", deviation=SET_DOWN_DEVIATION, turn_deviation=SET_DOWN_TURN_DEVIATION)
+        room, entered = self._begin("set down")
         yield entered
         try:
             yield from self._explore(room)
@@ -188,67 +181,4 @@ class Mission:
             MissionError: It is no room.
         """
         structure, voxels = yield from self._surveyor.survey(room)
-        yield from self._complete(room, structure, voxels)
-
-    def _complete(self, room: ExploredRoom, structure: Structure, voxels: VoxelModel) -> Iterator[Event]:
-        """Hand the completed room to the detector; tie it to the others; compare its doors with the joints."""
-        surveyor = self._surveyor
-        with self._stopwatch("detect"):
-            results = tuple(detect_doors(room_from(structure, voxels, room.views), self._config.detector))
-        yield surveyor.event(
-            DoorsDetected,
-            results=results,
-            floor_height=structure.floor_height,
-            ceiling_height=structure.ceiling_height,
-        )
-        room.views.clear()  # all else that is kept of a room is small
-        with self._stopwatch("tie rooms"):
-            faces = door_faces(results, room=room.number)
-            exits, refused = find_exits(
-                faces,
-                room.points,
-                floor_height=structure.floor_height,
-                footprint=self._footprint,
-                robot_height=self._config.navigation.grid.robot_height,
-                parameters=self._config.navigation.exits,
-            )
-            self._building.complete(CompletedRoom(room, structure, faces, tuple(exits)))
-            self._walls[room.number] = judged(results)
-        del results
-        yield surveyor.event(
-            RoomsTied,
-            world_from_room=dict(self._building.world_from_room),
-            links=tuple(self._building.links),
-            faces=tuple(self._building.faces()),
-            exits=tuple(way.face.door_id for way in exits),
-            refused=tuple((face.door_id, why) for face, why in refused),
-        )
-        for number in self._building.rooms:
-            if self._has_moved(number):
-                yield self._evaluated(number)
-
-    def _has_moved(self, number: int) -> bool:
-        """Whether a room lies elsewhere than where its doors were compared with the true ones."""
-        if number not in self._compared_at:
-            return True
-        corners = self._outline(number, self._building.world_from_room[number])
-        return bool(np.abs(corners - self._outline(number, self._compared_at[number])).max() > MOVED)
-
-    def _outline(self, number: int, world_from_room: Pose) -> NDArray[np.float64]:
-        """(P, 2) of a room's floor in the world [m]."""
-        polygon = self._building.rooms[number].structure.polygon
-        in_room = np.column_stack([polygon, np.zeros(len(polygon))])
-        return np.asarray(transformed(in_room, world_from_room)[:, :2], float)
-
-    def _evaluated(self, number: int) -> DoorsEvaluated:
-        """A room's doors, where they lie by now, beside the true ones."""
-        with self._stopwatch("evaluate"):
-            world_from_room = self._compared_at[number] = self._building.world_from_room[number]
-            doors, missed = evaluate(
-                placed(self._walls[number], world_from_room),
-                self._scene.true_doors(),
-                room=number,
-                outline=self._outline(number, world_from_room),
-            )
-        evaluated: DoorsEvaluated = self._surveyor.event(DoorsEvaluated, room=number, doors=doors, missed=missed)
-        return evaluated
+        yield from self._completion.complete(room, structure, voxels)

@@ -35,11 +35,10 @@ class Mopad:
         Args:
             scene: With the robot in it.
             config: Parameters of robot and sensors.
-            seed: Of all noise; each sensor draws from a stream of its own.
+            seed: Of all noise; each sensor draws from a stream of its own, scanner and camera anew every time.
         """
-        scanner, camera, hokuyo, robot, operator = (
-            np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(5)
-        )
+        self._scan_seeds, self._photo_seeds, *others = np.random.SeedSequence(seed).spawn(5)
+        hokuyo, robot, operator = (np.random.default_rng(s) for s in others)
         self._scene = scene
         self._hokuyo, self._hokuyo_rng = Hokuyo(scene.model, scene.robot_bodies, config.hokuyo), hokuyo
         self.robot = Robot(scene, config.robot, robot)
@@ -50,8 +49,8 @@ class Mopad:
         """What was put in the robot's way, in words, for the record: it does not know."""
         with ExitStack() as stack:  # what fails from here on closes the renderer
             renderer = stack.enter_context(Renderer(scene.model, hidden_bodies=scene.robot_bodies))
-            self._scanner, self._scanner_rng = Scanner(renderer, config.scanner), scanner
-            self._camera, self._camera_rng = Camera(renderer, config.camera), camera
+            self._scanner = Scanner(renderer, config.scanner)
+            self._camera = Camera(renderer, config.camera)
             self._owned = stack.pop_all()
 
     def __enter__(self) -> Self:
@@ -71,6 +70,11 @@ class Mopad:
     def world_from_base(self) -> Pose:
         """Where the robot believes to be."""
         return self.world_from_odometry @ self.robot.odometry
+
+    @property
+    def world_from_scanner(self) -> Pose:
+        """Where the robot believes its scanner to be."""
+        return self.world_from_base @ self.robot.base_from_scanner
 
     @property
     def true_world_from_scanner(self) -> Pose:
@@ -93,13 +97,15 @@ class Mopad:
     def scan(self) -> Scan:
         """One panorama; takes the time that the VZ-400 needs."""
         self.meet_obstacles(driving=False)
-        scan = self._scanner.scan(self._scene.data, self.true_world_from_scanner, self._scanner_rng)
+        rng = np.random.default_rng(*self._scan_seeds.spawn(1))
+        scan = self._scanner.scan(self._scene.data, self.true_world_from_scanner, rng)
         self.robot.wait(scan.duration)
         return scan
 
     def photograph(self) -> tuple[Photo, ...]:
         """One turn of the camera."""
-        photos = self._camera.photograph(self._scene.data, self.true_world_from_scanner, self._camera_rng)
+        rng = np.random.default_rng(*self._photo_seeds.spawn(1))
+        photos = self._camera.photograph(self._scene.data, self.true_world_from_scanner, rng)
         self.robot.wait(SECONDS_PER_PHOTO * len(photos))
         return photos
 

@@ -25,7 +25,7 @@ from mission.grid import Footprint, OccupancyGrid
 from mission.navigation import NavigationParameters, RoadMap, road_map
 from mission.planners import Planner, planner
 from mission.survey import NOTHING, Preview, StructuralVoxels, Survey
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 
 COVERAGE, SCAN_LIMIT = "coverage", "scan limit"
 NO_OVERLAP, UNREACHABLE = "no overlap", "nothing reachable"

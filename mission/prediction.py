@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from sim.parameters import Parameters
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 
 _LEVELS = 4
 """Depth maps, each with bins twice as wide as the last one's."""

@@ -10,7 +10,6 @@ import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
-from itertools import count
 from pathlib import Path
 from time import perf_counter
 
@@ -21,6 +20,7 @@ from detector.room import DetectorError
 from mission.config import read_config
 from mission.errors import MissionError, UsageError
 from mission.events import Event
+from mission.folders import BAD_INPUT, BELOW, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder
 from mission.interrupts import Interrupts
 from mission.memory import release_freed_memory
 from mission.mission import Mission
@@ -33,12 +33,6 @@ from sim.obstacles import Obstacle
 from sim.scene import load_scene
 
 logger = logging.getLogger(__name__)
-
-DONE, BELOW, BAD_INPUT, FAILED, INTERRUPTED = 0, 1, 2, 3, 130
-"""Exit status."""
-
-LOG_WIDTH = 120
-"""Of what is printed where no terminal tells its width, such as on a CI machine."""
 
 METRICS = ("recall", "precision", "found", "coverage")
 """What --fail-under knows: larger is better, 1 is perfect."""
@@ -168,43 +162,6 @@ def find_scene(scene: str) -> Path:
     close = difflib.get_close_matches(scene, shipped, n=1)
     hint = f"did you mean {close[0]}?" if close else f"shipped scenes: {', '.join(shipped)}"
     raise UsageError(f"no such scene: {scene!r} ({hint})")
-
-
-def make_folder(out: str | None, *, scene_name: str, first_file: str = "mission.rrd") -> Path:
-    """Make the folder for the results.
-
-    Args:
-        out: As the user has it; None for runs/<scene>-<n>.
-        scene_name: Names it where the user does not.
-        first_file: That is written into it.
-
-    Raises:
-        UsageError: It cannot be made or written.
-    """
-    try:
-        if out is None:
-            return _numbered(Path("runs"), Path(scene_name).stem)
-        if not out:
-            raise UsageError("--out: the name of the folder is empty")
-        folder = Path(out)
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / first_file).open("ab").close()  # can it be written?
-    except OSError as error:
-        raise UsageError(f"cannot write the results: {error.strerror}: {error.filename}") from error
-    return folder
-
-
-def _numbered(runs: Path, stem: str) -> Path:
-    """A new folder of the next free number, which nobody else has taken meanwhile."""
-    runs.mkdir(exist_ok=True)
-    for number in count(1):
-        folder = runs / f"{stem}-{number}"
-        try:
-            folder.mkdir()
-        except FileExistsError:
-            continue
-        return folder
-    raise AssertionError("unreachable")
 
 
 def _shorthands(options: argparse.Namespace) -> list[str]:

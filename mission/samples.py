@@ -15,7 +15,7 @@ from mission.rigid import Pose, rotated, transformed
 from sim.parameters import Parameters
 
 if TYPE_CHECKING:
-    from sim.scanner import Scan
+    from sim.scan import Scan
 
 Image = NDArray[np.float64]
 

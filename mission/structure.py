@@ -15,7 +15,7 @@ from mission.samples import PosedSample, thinned
 from mission.visibility import Visibility, VisibilityParameters
 from mission.wall_finder import Outline, WallFinder, WallParameters, WallRectangle
 from sim.parameters import Parameters
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 
 Floats = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from pydantic import Field
 from detector.room import VoxelLabel
 from mission.prediction import Cells, Prospect, ScannerView, find_obstacles, prospect
 from sim.parameters import Parameters
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 
 
 class SurveyParameters(Parameters):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,22 +28,31 @@ from mission.events import (
 from mission.explored_room import ExploredRoom
 from mission.joints import opening
 from mission.localisation import localise
-from mission.mopad import Mopad
 from mission.registration import Registration
 from mission.rigid import Pose, inverted
 from mission.samples import ScanSample, place, sample_scan
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
 from mission.voxels import VoxelModel
-from sim.hokuyo import LaserScan
-from sim.scanner import Scan
-from sim.scene import Scene
+from sim.laser_scan import LaserScan
+from sim.scan import Scan
+
+if TYPE_CHECKING:
+    from mission.mopad import Mopad
+    from sim.door_truth import DoorTruth
 
 MAX_DETOURS = 3
 """So many ways in a row may end before their goal; then the room is done with what is there."""
 
 NO_ARRIVAL = "ways end early"
 """Reason to stop, beside those of the planner."""
+
+
+class Scene(Protocol):
+    """What the surveyor needs of a scene: truth for its events."""
+
+    def true_doors(self) -> tuple[DoorTruth, ...]:
+        """As they stand now."""
 
 
 class Surveyor:
@@ -66,6 +75,12 @@ class Surveyor:
         self._steps += 1
         return event
 
+    def again(self, recorded: Event) -> Event:
+        """A recorded event as the next one."""
+        event = replace(recorded, step=self._steps)
+        self._steps += 1
+        return event
+
     def remark(self, text: str) -> Remarked:
         """Something that a person should know."""
         remarked: Remarked = self.event(Remarked, level="warning", text=text)
@@ -84,8 +99,8 @@ class Surveyor:
             MissionError: There is no room.
         """
         while True:
-            yield from self._scan_here(room, photograph=photograph)
-            structure, voxels = yield from self._understand(room)
+            yield from self.scan_here(room, photograph=photograph)
+            structure, voxels = yield from self.understand(room)
             arrived = yield from self._move_on(room, structure, voxels)
             if not arrived:
                 return structure, voxels
@@ -122,8 +137,8 @@ class Surveyor:
         yield from self._news()
         return drove
 
-    def _scan_here(self, room: ExploredRoom, *, photograph: bool) -> Iterator[Event]:
-        """Scan, photograph, register and colour at the present pose."""
+    def scan_here(self, room: ExploredRoom, *, photograph: bool) -> Iterator[Event]:
+        """Scan, photograph, register and colour at the present pose: a scan of the room."""
         scan = yield from self._scan()
         if photograph:
             with self._stopwatch("photograph"):
@@ -156,7 +171,7 @@ class Surveyor:
     def _register(self, room: ExploredRoom, scan: Scan) -> Generator[Event, None, tuple[ScanSample, Registration]]:
         """Find where in a room a scan was taken, and believe it."""
         mopad = self._mopad
-        guess = mopad.world_from_base @ mopad.robot.base_from_scanner
+        guess = mopad.world_from_scanner
         with self._stopwatch("register"):
             sample = sample_scan(scan, self._config.samples)
             found = room.registrar.register(sample, guess)
@@ -178,7 +193,7 @@ class Surveyor:
             yield self.remark(f"scan {self._scans} is left out: {found.reason}")
         return sample, found
 
-    def _understand(self, room: ExploredRoom) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
+    def understand(self, room: ExploredRoom) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
         """Floor, ceiling, walls and voxels of the room as far as it is scanned."""
         with self._stopwatch("structure"):
             structure = room.structure()

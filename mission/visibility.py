@@ -13,7 +13,7 @@ from pydantic import Field
 from mission.rigid import inverted, transformed
 from mission.samples import PosedSample
 from sim.parameters import Parameters
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 
 Mask = NDArray[np.bool_]
 

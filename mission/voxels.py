@@ -17,7 +17,7 @@ from mission.structure import Structure
 from mission.visibility import Visibility, VisibilityParameters
 from mission.wall_finder import WallRectangle
 from sim.parameters import Parameters
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 
 Floats = NDArray[np.float64]
 Labels = NDArray[np.uint8]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Literal
 
 import mujoco
 import numpy as np
 
 from sim.closing import ClosedLeaf, close_pair, close_single, joined, rectangle_normal
 from sim.covering import uncovered
+from sim.door_truth import DoorTruth, LeafTruth
 from sim.errors import SimError
 from sim.leaves import find_leaves
 from sim.rays import Rays
@@ -22,41 +22,6 @@ _WEDGE = 15.0
 
 _STIFF = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 """Impedance of that friction: with MuJoCo's own, a leaf on a leaning hinge creeps by a degree in a minute."""
-
-
-@dataclass(frozen=True)
-class LeafTruth:
-    """One leaf as it stands now."""
-
-    name: str
-    """Of the body, else of the joint."""
-    opening_angle: float
-    """From closed [rad], at least 0; NaN for a sliding leaf."""
-    opening: float
-    """Way from closed [m], at least 0; NaN for a hinged leaf."""
-    swing_normal: np.ndarray
-    """(3,) horizontal unit vector towards which the free edge leaves the closed leaf's plane; for a slide, the way."""
-    corners_in_world: np.ndarray
-    """(4, 3) mid-plane of the leaf now: hinge bottom, free bottom, free top, hinge top [m]."""
-
-
-@dataclass(frozen=True)
-class DoorTruth:
-    """One doorway with its leaf or its two leaves."""
-
-    name: str
-    """The leaf's name; of a double door, both joined with `+`."""
-    kind: Literal["hinged", "sliding"]
-    leaf_names: tuple[str, ...]
-    corners_in_world: np.ndarray
-    """(4, 3) rectangle on the mid-plane that the closed leaves fill: bottom left, bottom right, top right, top left,
-    seen from the side that `normal` points to [m]."""
-    normal: np.ndarray
-    """(3,) horizontal unit normal of the closed leaf, towards the side to which the (first) leaf opens."""
-    outlines_in_world: tuple[np.ndarray, np.ndarray]
-    """(4, 3) each, like `corners_in_world`: the doorway as it shows from the side that `normal` points to, and from the
-    other: the closed leaf, and of one that slides what the wall does not cover [m]."""
-    leaves: tuple[LeafTruth, ...]
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,10 @@ WEAK_SIGNAL = 0.1
 WORST_PRECISION = 4.0
 """Largest factor on the precision: 8 to 12 mm is what users report from hard places (field notes of VZ-400 users)."""
 REFLECTANCE_NOISE_DB = 0.7
+RANGE_STEPS = 4000.0
+"""Ranges are whole multiples of 0.25 mm, as Riegl's RDB files keep coordinates [1/m]."""
+REFLECTANCE_STEPS = 10.0
+"""Reflectances are whole multiples of 0.1 dB, a seventh of their noise [1/dB]; RDB files keep 0.01 dB."""
 # ---- Its reach.
 MIN_RANGE = 1.5
 """[m] (HELIOS++ data/scanners_tls.xml)"""
@@ -115,7 +119,17 @@ def _detect(ranges: NDArray[np.float32], reflectance: NDArray[np.float32], recei
         noise[1] *= np.float32(receiver.reflectance_noise)
         ranges += noise[0]
         reflectance += noise[1]
+        _round(ranges, RANGE_STEPS)
+        _round(reflectance, REFLECTANCE_STEPS)
     reach = amplitude * np.float32(receiver.max_range / np.sqrt(MAX_RANGE_REFLECTANCE))
     lost = (ranges < receiver.min_range) | (ranges > reach)
     ranges[lost] = np.nan
     reflectance[lost] = np.nan
+
+
+def _round(values: NDArray[np.float32], steps: float) -> None:
+    """To whole multiples of 1 / steps, in place."""
+    values *= np.float32(steps)
+    np.rint(values, out=values)
+    values += np.float32(0)  # there is no -0
+    values /= np.float32(steps)

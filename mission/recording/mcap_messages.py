@@ -114,7 +114,7 @@ def cloud(
     *,
     frame: str,
 ) -> PointCloud:
-    """All points of a scan, in a room's frame, rounded to the recording's grid."""
+    """Points in a room's frame, rounded to the recording's grid."""
     return PointCloud(
         timestamp=timestamp(time),
         frame_id=frame,

@@ -25,12 +25,10 @@ from numpy.typing import NDArray
 
 from mission.events import (
     Coloured,
-    DoorsDetected,
     DoorsEvaluated,
     Drove,
     Event,
     Labelled,
-    MissionFinished,
     MissionStarted,
     Photographed,
     Planned,
@@ -40,29 +38,33 @@ from mission.events import (
     Structured,
 )
 from mission.joints import opening
+from mission.recording import mcap_drawings as drawings
 from mission.recording import mcap_messages as messages
-from mission.recording import mcap_records as records
-from mission.recording.drawing import label_colours
+from mission.recording.drawing import label_colours, thin
+from mission.recording.kinds import PARTS
 from mission.recording.mcap_messages import MAP, room_frame
-from mission.recording.mcap_topics import open_channels
+from mission.recording.mcap_topics import FORMAT, PROFILE, open_channels, topic_of, topic_of_parts
 from mission.recording.room_frames import RoomFrames
 from mission.recording.sentences import level, sentence
 
 if TYPE_CHECKING:
-    from sim.hokuyo import LaserScan
+    from sim.laser_scan import LaserScan
 
 EPOCH = 946_684_800_000_000_000
 """Mission time zero on the clock of the file: 2000-01-01 00:00:00 UTC [ns]. A mission has no date of its own."""
+CLOUD_SPACING, CLOUD_READ = 0.02, 500_000
+"""Of the clouds that viewers show: side of the cells that hold one point each [m], and points that are looked at."""
 PER_STEP = 1_000
 """Added to an event's time for each earlier event [ns]: detection takes no mission time, but has an order."""
 
 
 class McapSink:
-    """Writes every event to an MCAP file as it happens.
+    """Writes every event to an MCAP file as it happens, complete, and beside it what viewers show.
 
     Log times are mission time since `EPOCH` plus a microsecond an event, strictly increasing over the file; timestamps
-    inside messages are mission time since `EPOCH` and no more. Nothing of wall clock, host or path goes in, and
-    compression runs on a fixed number of threads, so two runs of one mission give the same bytes.
+    inside messages are mission time since `EPOCH` and no more. Nothing of host or path goes in, and of wall clock only
+    how long the detector's stages took; compression runs on a fixed number of threads, so the same events give the same
+    bytes.
     """
 
     def __init__(self, path: Path) -> None:
@@ -76,7 +78,7 @@ class McapSink:
     def __enter__(self) -> Self:
         self._context = foxglove.Context()  # never the global one, whose topics leak between recordings; kept alive
         options = MCAPWriteOptions(
-            profile="", compression=MCAPCompression.Zstd, compression_level=1, compression_threads=2
+            profile=f"{PROFILE}{FORMAT}", compression=MCAPCompression.Zstd, compression_level=1, compression_threads=2
         )
         self._writer = foxglove.open_mcap(
             self._path, allow_overwrite=True, context=self._context, writer_options=options
@@ -99,7 +101,10 @@ class McapSink:
             "/log",
             Log(timestamp=messages.timestamp(self._now), level=severity, message=sentence(event), name="mission"),
         )
-        self._log("/mission/step", {"step": event.step, "room": event.room, "event": type(event).__name__})
+        if type(event) in PARTS:
+            for part in getattr(event, PARTS[type(event)]):
+                self._log(topic_of_parts(type(event)), part)
+        self._log(topic_of(type(event)), event)  # the last of its messages: whoever reads it has them all
         self._writer.flush()
 
     @singledispatchmethod
@@ -117,7 +122,7 @@ class McapSink:
         self._joints = tuple(door.name for door in event.true_doors)
         openings = np.array([opening(door) for door in event.true_doors])
         self._log("/truth/joints", self._joint_states(self._now, openings))
-        self._log("/robot", SceneUpdate(entities=[records.robot(self._now, event.robot)]))
+        self._log("/robot", SceneUpdate(entities=[drawings.robot(self._now, event.robot)]))
 
     @_record.register
     def _(self, event: RoomEntered) -> None:
@@ -131,7 +136,6 @@ class McapSink:
         self._frames.follow(event)
         rooms = [(MAP, room_frame(room), pose) for room, pose in event.world_from_room.items()]
         self._log("/tf", self._transforms(*rooms))
-        self._log("/building/rooms", records.rooms(event))
 
     @_record.register
     def _(self, event: Photographed) -> None:
@@ -147,35 +151,36 @@ class McapSink:
     def _(self, event: Registered) -> None:
         frame = f"scan {event.scan_number}"
         self._log("/tf", self._transforms((room_frame(event.room), frame, event.world_from_scanner)))
-        self._log("/scan/registration", records.registration(event))
 
     @_record.register
     def _(self, event: Coloured) -> None:
         view = event.view
+        shown = thin(view.points_in_world, cell=CLOUD_SPACING, limit=CLOUD_READ, read=CLOUD_READ)
         cloud = messages.cloud(
-            self._now, view.points_in_world, view.colours, view.coloured, frame=room_frame(event.room)
+            self._now,
+            view.points_in_world[shown],
+            view.colours[shown],
+            view.coloured[shown],
+            frame=room_frame(event.room),
         )
         self._log("/scan/points", cloud)
 
     @_record.register
     def _(self, event: Structured) -> None:
-        self._log("/room/structure", records.structure(event))
-        walls = [records.wall(self._now, event.room, n, w) for n, w in enumerate(event.structure.walls, start=1)]
+        walls = [drawings.wall(self._now, event.room, n, w) for n, w in enumerate(event.structure.walls, start=1)]
         self._walls[event.room] = walls
         entities = [wall for walls in self._walls.values() for wall in walls]
-        self._log("/room/walls", SceneUpdate(deletions=[records.everything(self._now)], entities=entities))
+        self._log("/room/walls", SceneUpdate(deletions=[drawings.everything(self._now)], entities=entities))
 
     @_record.register
     def _(self, event: Labelled) -> None:
         model = event.voxels
-        self._log("/room/voxels", records.voxels(event))
         centres, colours = model.cells_in_world.astype(np.float32), label_colours(model.labels)
         known, frame = np.ones(len(centres), bool), room_frame(event.room)
         self._log("/room/voxel_centres", messages.cloud(self._now, centres, colours, known, frame=frame))
 
     @_record.register
     def _(self, event: Planned) -> None:
-        self._log("/plan/candidates", records.plan(event))
         grid = event.grid
         frame = room_frame(event.room)
         self._log("/plan/grid", messages.occupancy(self._now, grid.origin, grid.resolution, grid.cells, frame=frame))
@@ -183,24 +188,14 @@ class McapSink:
     @_record.register
     def _(self, event: Drove) -> None:
         self._log_way(event)
-        path = [messages.pose(records.on_floor(point)) for point in event.planned_path]
+        path = [messages.pose(drawings.on_floor(point)) for point in event.planned_path]
         planned = PosesInFrame(timestamp=messages.timestamp(self._now), frame_id=room_frame(event.room), poses=path)
         self._log("/drive/planned_path", planned)
-        self._log("/drive/leg", records.drive(event))
-
-    @_record.register
-    def _(self, event: DoorsDetected) -> None:
-        self._log("/doors/detected", records.detected(event))
 
     @_record.register
     def _(self, event: DoorsEvaluated) -> None:
-        self._log("/doors/estimates", records.estimates(event))
-        entities = [e for number, door in enumerate(event.doors) for e in records.door(self._now, door, number)]
+        entities = [e for number, door in enumerate(event.doors) for e in drawings.door(self._now, door, number)]
         self._log("/doors/scene", SceneUpdate(entities=entities))
-
-    @_record.register
-    def _(self, event: MissionFinished) -> None:
-        self._log("/mission/outcome", {"outcome": event.outcome, "reason": event.reason})
 
     def _log_way(self, event: Drove) -> None:
         """Poses, joints and Hokuyo scans of a leg, in the order of their times."""

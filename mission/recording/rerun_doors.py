@@ -31,7 +31,7 @@ from mission.recording.room_frames import RoomFrames
 from mission.rigid import Pose, inverted
 
 if TYPE_CHECKING:
-    from sim.camera import Photo
+    from sim.photo import Photo
 
 PHOTO_WIDTH = 600
 """Photographs are recorded at most this wide [px]; the MCAP has them in full."""

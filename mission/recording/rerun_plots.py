@@ -27,7 +27,7 @@ from mission.recording.entities import child
 from mission.recording.sentences import level, sentence
 
 if TYPE_CHECKING:
-    from sim.doors import DoorTruth
+    from sim.door_truth import DoorTruth
 
 ACTIVITY_COLOURS = {
     "start": (120, 120, 120),
@@ -159,21 +159,19 @@ def _lane(colours: dict[str, tuple[int, int, int]]) -> rr.StateConfiguration:
 
 
 def _row(evaluation: DoorEvaluation) -> rr.AnyValues:
-    """A row of the table of doors; unknown numbers are NaN."""
+    """A row of the table of doors; unknown numbers are left out: NaN would not be equal to that of a replay."""
     door, areas = evaluation.door, evaluation.overlap
-    nan = float("nan")
-    return rr.AnyValues(
-        kind=door.kind,
-        state=door.state,
-        width_m=door.rectangle.width,
-        height_m=door.rectangle.height,
-        angle_deg=float(np.degrees(door.opening_angle)),
-        angle_std_deg=float(np.degrees(evaluation.opening_angle_std)),
-        opened_fraction=door.opened_fraction,
-        joint_deg=nan if evaluation.true_angle is None else float(np.degrees(evaluation.true_angle)),
-        error_deg=nan if evaluation.angle_error is None else float(np.degrees(evaluation.angle_error)),
-        precision=areas.precision if areas else nan,
-        recall=areas.recall if areas else nan,
-        confidence=door.confidence,
-        truth=evaluation.true_name or "",
-    )
+    numbers = {
+        "width_m": door.rectangle.width,
+        "height_m": door.rectangle.height,
+        "angle_deg": np.degrees(door.opening_angle),
+        "angle_std_deg": np.degrees(evaluation.opening_angle_std),
+        "opened_fraction": door.opened_fraction,
+        "joint_deg": None if evaluation.true_angle is None else np.degrees(evaluation.true_angle),
+        "error_deg": None if evaluation.angle_error is None else np.degrees(evaluation.angle_error),
+        "precision": areas.precision if areas else None,
+        "recall": areas.recall if areas else None,
+        "confidence": door.confidence,
+    }
+    known = {name: float(number) for name, number in numbers.items() if number is not None and np.isfinite(number)}
+    return rr.AnyValues(True, kind=door.kind, state=door.state, truth=evaluation.true_name or "", **known)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.scanner import Scan
+from sim.scan import Scan
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 import sim.scene
 from mission.grid import Cell, Footprint, OccupancyGrid
-from sim.hokuyo import LaserScan
-from sim.robot import RobotParameters
+from sim.guardian import RobotParameters
+from sim.laser_scan import LaserScan
 
 Rectangle = tuple[float, float, float, float]
 """x from, x to, y from, y to [m]."""

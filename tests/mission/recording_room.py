@@ -32,8 +32,8 @@ from mission.pose_graph import Link
 from mission.structure import Structure
 from mission.voxels import FLOOR, LevelGrid, VoxelModel
 from mission.wall_finder import WallRectangle
-from sim.camera import Photo
-from sim.doors import DoorTruth, LeafTruth
+from sim.door_truth import DoorTruth, LeafTruth
+from sim.photo import Photo
 
 ROWS, COLUMNS, PIXEL = 60, 100, 0.045
 """Orthoimages of 4.5 x 2.7 m."""

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mission import events
-from sim.hokuyo import LaserScan
-from sim.robot import RobotShape
-from sim.scanner import Scan
+from mission.occupancy import Footprint
+from sim.door_truth import DoorTruth
+from sim.guardian import RobotShape
+from sim.laser_scan import LaserScan
+from sim.scan import Scan
 from tests.mission import recording_room as made
 
 SECOND = 1_000_000_000
@@ -53,7 +55,7 @@ def story(count: int = 2000) -> Story:
         exits=("1.2-a",),
         refused=(("1.3-a", "open by 0.00 m, 0.71 m needed"),),
     )
-    told.tell(events.DoorsEvaluated, 172, doors=judged, missed=("lift",))
+    told.tell(events.DoorsEvaluated, 172, doors=judged, missed=("lift",), true_doors=true_doors())
     told.tell(events.MissionFinished, 172, outcome="completed", reason="one room")
     return told
 
@@ -62,7 +64,6 @@ def tell_start(told: Story) -> None:
     """A robot of four triangles, at (2, 2)."""
     corners = np.array([[0.3, 0, 0.2], [-0.3, 0.3, 0.2], [-0.3, -0.3, 0.2], [0, 0, 1.2]], np.float32)
     faces = np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]], np.int32)
-    _, hall, store, lift = made.walls()
     told.tell(
         events.MissionStarted,
         0,
@@ -73,12 +74,9 @@ def tell_start(told: Story) -> None:
         versions={"numpy": "2.0"},
         world_from_base=made.pose(2, 2),
         robot=RobotShape(corners, faces, np.full((4, 3), 90, np.uint8)),
+        footprint=Footprint(1.0, 0.6),
         base_from_scanner=made.pose(0, 0, 1.2),
-        true_doors=(
-            made.true_door("hall/door 1", hall, angle=made.JOINT),
-            made.true_door("store", store, angle=0.0),
-            made.true_door("lift", lift, way=0.5),
-        ),
+        true_doors=true_doors(),
     )
     here = made.pose(2, 2)
     told.tell(
@@ -86,9 +84,20 @@ def tell_start(told: Story) -> None:
         0,
         how="start",
         door=None,
+        before=None,
         world_from_room=np.eye(4),
         world_from_base=here,
         true_world_from_base=here,
+    )
+
+
+def true_doors() -> tuple[DoorTruth, ...]:
+    """A hinged door in each of two walls, one that slides in the last."""
+    _, hall, store, lift = made.walls()
+    return (
+        made.true_door("hall/door 1", hall, angle=made.JOINT),
+        made.true_door("store", store, angle=0.0),
+        made.true_door("lift", lift, way=0.5),
     )
 
 

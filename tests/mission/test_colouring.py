@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from mission.colouring import colour_scan
 from mission.errors import MissionError
 from mission.rigid import transformed
-from sim.camera import Photo
-from sim.scanner import Scan
+from sim.photo import Photo
+from sim.scan import Scan
 from tests.mission.boxroom import box, pose, scan
 
 WALL = box((4, 4.2), (-4, 4), (0, 4))

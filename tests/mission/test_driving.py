@@ -11,7 +11,7 @@ from mission.driving import drive
 from mission.following import DrivingParameters, follow_path
 from mission.grid import Cell, OccupancyGrid, with_laser
 from mission.navigation import plan_path
-from sim.robot import RobotParameters
+from sim.guardian import RobotParameters
 from tests.mission.driving_world import FOOTPRINT, Unicycle, body_gap, hokuyos, laser_scan, pose
 
 

@@ -11,7 +11,7 @@ import mission.explored_room
 from mission.config import MissionConfig
 from mission.explored_room import ExploredRoom
 from mission.registration import Registrar
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 from tests.mission.driving_world import FOOTPRINT, pose
 from tests.mission.test_visibility import scan
 

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from mission.grid import Cell, Footprint, OccupancyGrid, grid_from_scans, with_laser
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 from tests.mission.driving_world import FOOTPRINT, Rectangle, free_room, laser_scan, pose
 
 SCANNER = np.array([[0.0, 0.0, 1.2]])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from mission.driving import drive
 from mission.localisation import LaserMap, laser_map, localise
-from sim.hokuyo import LaserScan
+from sim.laser_scan import LaserScan
 from tests.mission.driving_world import FOOTPRINT, Rectangle, Unicycle, hokuyos, laser_scan, pose
 
 WALLS: list[Rectangle] = [

@@ -95,6 +95,11 @@ def test_no_door_is_missed_and_none_is_invented(house: Path) -> None:
     assert (metrics["doors"], metrics["found"], metrics["false_positives"]) == (4, 4, 0)
 
 
+def test_judged_again_from_its_recording_the_house_is_the_same_to_the_last_byte(house: Path, tmp_path: Path) -> None:
+    assert main(["replay", str(house / "mission.mcap"), "--redetect", "--quiet", "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "doors.json").read_bytes() == (house / "doors.json").read_bytes()
+
+
 def test_a_mission_ends_after_as_many_rooms_as_are_asked_for(tmp_path: Path) -> None:
     (tmp_path / "house.xml").write_text(HOUSE)
     options = ["--door", "open_door=95", "--max-rooms", "1", "--quiet", "--out", str(tmp_path)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mission.prediction import Cells, Obstacles, ScannerView, find_obstacles, prospect
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 from tests.mission.voxel_room import ROOM, box_points, room_voxels
 
 NO_OBSTACLES = Obstacles(cubes=np.empty((0, 3)), walls=np.empty((0, 2)))

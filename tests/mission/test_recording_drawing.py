@@ -20,7 +20,6 @@ from mission.recording.drawing import (
     shrink,
     thin,
 )
-from mission.recording.mcap_schemas import file_descriptor
 from mission.recording.rerun_world import hover
 from mission.recording.sentences import level, sentence
 from tests.mission.recording_room import JOINT, door, evaluation, walls
@@ -128,14 +127,6 @@ def test_every_event_has_a_sentence_of_its_own() -> None:
     assert "1.2-a 30.0 deg (joint 31.0); 1.3-a 0.0 deg (joint 0.0); missed lift" in lines
     assert "drove 2.00 m" in lines
     assert [level(event) for event in story()].count("WARN") == 1  # the remark
-
-
-def test_schema_text_becomes_numbered_fields() -> None:
-    file = file_descriptor("message A  # what\n  double x  # [m]\n\nmessage B\n  repeated A many\n  string name\n")
-    assert [message.name for message in file.message_type] == ["A", "B"]
-    many, name = file.message_type[1].field
-    assert (many.number, many.type_name, many.label) == (1, ".mission.A", many.LABEL_REPEATED)
-    assert (name.number, name.type) == (2, name.TYPE_STRING)
 
 
 def test_a_leg_that_ends_early_is_a_warning_that_says_how_it_ended() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mission.survey import Survey, SurveyParameters
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 from tests.mission.voxel_room import OCCLUDED, OPENING, ROOM, SCANNER, Voxels, room_voxels
 
 

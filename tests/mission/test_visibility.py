@@ -8,7 +8,7 @@ import pytest
 import tests.mission.boxroom as boxroom
 from mission.samples import PosedSample, ScanSample, place, sample_scan
 from mission.visibility import Visibility, VisibilityParameters, _direction_cells, _near_directions
-from sim.scanner import ScannerParameters
+from sim.scan import ScannerParameters
 
 
 def scan(*points: tuple[float, float, float]) -> PosedSample:

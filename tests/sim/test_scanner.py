@@ -230,6 +230,14 @@ def test_the_same_seed_gives_the_same_scan_and_another_one_another(world, render
     assert not np.array_equal(first.ranges, other.ranges, equal_nan=True)
 
 
+def test_readings_are_whole_quarters_of_a_millimetre_and_tenths_of_a_decibel(world, renderer_of):
+    noisy = ScannerParameters(pattern="draft")
+    scan = scan_once(renderer_of, world('<geom type="box" size=".1 9 9" pos="5 0 0"/>'), parameters=noisy)
+    ranges, reflectance = scan.ranges[scan.hits].astype(float), scan.reflectance[scan.hits].astype(float)
+    assert np.abs(ranges * 4000 - np.rint(ranges * 4000)).max() < 0.01
+    assert np.abs(reflectance * 10 - np.rint(reflectance * 10)).max() < 0.01
+
+
 def test_the_noise_does_not_depend_on_the_number_of_cores(world, renderer_of, monkeypatch):
     scene, noisy = world(ROOM), ScannerParameters(pattern="draft")
     scans = []

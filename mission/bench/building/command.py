@@ -17,10 +17,11 @@ from mission.bench.building.tables import table_3
 from mission.bench.terminal import print_tables
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError
+from mission.folders import BAD_INPUT, LOG_WIDTH, make_folder
 from mission.mission import Mission
 from mission.progress import TerminalProgress
 from mission.report import Report, write_json
-from mission.run import BAD_INPUT, LOG_WIDTH, carry_out, find_scene, make_folder
+from mission.run import carry_out, find_scene
 from mission.stopwatch import Stopwatch
 from mission.versions import versions
 from sim.errors import SimError

@@ -25,7 +25,8 @@ from mission.bench.walls.scanning import scanner_mount
 from mission.candidates import PlanningParameters
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError
-from mission.run import BAD_INPUT, DONE, INTERRUPTED, LOG_WIDTH, find_scene, make_folder
+from mission.folders import BAD_INPUT, DONE, INTERRUPTED, LOG_WIDTH, make_folder
+from mission.run import find_scene
 from sim.errors import SimError
 from sim.scene import load_scene
 

@@ -30,7 +30,7 @@ from mission.bench.walls.rooms import BenchRoom, rooms
 from mission.bench.walls.scanning import judged_doors
 from mission.config import read_config
 from mission.evaluation import doorway_on
-from sim.doors import DoorTruth
+from sim.door_truth import DoorTruth
 
 IS_DOOR = 0.8
 """A candidate that shares this much of its union with a true doorway is that door."""

@@ -21,7 +21,7 @@ from mission.bench.walls.rooms import CATEGORIES, BenchRoom, rooms
 from mission.bench.walls.variants import Variant, variants
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError, UsageError
-from mission.run import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder
+from mission.folders import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder
 from sim.errors import SimError
 
 Judged = dict[Variant, list[WallJudgement]]

@@ -21,7 +21,7 @@ from mission.config import MissionConfig
 from mission.errors import MissionError
 from mission.evaluation import SAME_DIRECTION, SAME_PLANE, doorway_on, evaluate
 from mission.report import peak_memory
-from sim.doors import DoorTruth
+from sim.door_truth import DoorTruth
 
 JPEG_QUALITY = 85
 

@@ -10,7 +10,7 @@ import numpy as np
 from detector.result import Door
 from mission.bench.walls.rooms import BenchDoor, BenchWall
 from mission.evaluation import DoorEvaluation, true_opened_fraction
-from sim.doors import DoorTruth
+from sim.door_truth import DoorTruth
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,48 @@
+"""The command `compare`: two recorded missions side by side."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from mission.comparison import differences, doors_compared, doors_differ
+from mission.errors import MissionError
+from mission.events import Coloured, DoorsDetected, Photographed, Scanned
+from mission.folders import BAD_INPUT, BELOW, DONE, LOG_WIDTH
+from mission.recording.mcap_reader import read_events
+from mission.report import Report
+
+
+def compare(options: argparse.Namespace) -> int:
+    """Print what differs, and return 1 if anything does."""
+    try:
+        first, second = _report(Path(options.first)), _report(Path(options.second))
+    except MissionError as error:
+        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
+        return BAD_INPUT
+    console = Console(width=None if sys.stdout.isatty() else LOG_WIDTH)
+    rows = differences(first, second)
+    if rows:
+        table = Table("what", "A", "B", title="the missions", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+        for row in rows:
+            table.add_row(*map(escape, row))
+        console.print(table)
+    changed = doors_differ(first, second)
+    if changed:
+        console.print(doors_compared(first, second, "A", "B"))
+    if not rows and not changed:
+        console.print("nothing differs")
+    return BELOW if rows or changed else DONE
+
+
+def _report(path: Path) -> Report:
+    report = Report()
+    for event in read_events(path, without=(Scanned, Photographed, Coloured, DoorsDetected)):
+        report.handle(event)
+    return report

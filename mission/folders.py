@@ -1,0 +1,51 @@
+"""Where results go, and the exit status of commands."""
+
+from __future__ import annotations
+
+from itertools import count
+from pathlib import Path
+
+from mission.errors import UsageError
+
+DONE, BELOW, BAD_INPUT, FAILED, INTERRUPTED = 0, 1, 2, 3, 130
+"""Exit status."""
+
+LOG_WIDTH = 120
+"""Of what is printed where no terminal tells its width, such as on a CI machine."""
+
+
+def make_folder(out: str | None, *, scene_name: str, first_file: str = "mission.rrd") -> Path:
+    """Make the folder for the results.
+
+    Args:
+        out: As the user has it; None for runs/<scene>-<n>.
+        scene_name: Names it where the user does not.
+        first_file: That is written into it.
+
+    Raises:
+        UsageError: It cannot be made or written.
+    """
+    try:
+        if out is None:
+            return _numbered(Path("runs"), Path(scene_name).stem)
+        if not out:
+            raise UsageError("--out: the name of the folder is empty")
+        folder = Path(out)
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / first_file).open("ab").close()  # can it be written?
+    except OSError as error:
+        raise UsageError(f"cannot write the results: {error.strerror}: {error.filename}") from error
+    return folder
+
+
+def _numbered(runs: Path, stem: str) -> Path:
+    """A new folder of the next free number, which nobody else has taken meanwhile."""
+    runs.mkdir(exist_ok=True)
+    for number in count(1):
+        folder = runs / f"{stem}-{number}"
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            continue
+        return folder
+    raise AssertionError("unreachable")

@@ -1,0 +1,185 @@
+"""A recorded mission judged again: registration to doors, from recorded scans and photographs, where they were taken.
+
+Nothing is planned or driven: plans, legs and remarks are told again as they were recorded. The stages are the mission's
+own, and need no simulator.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, cast
+
+from mission.completion import Completion
+from mission.config import MissionConfig
+from mission.errors import MissionError
+from mission.events import (
+    Coloured,
+    DoorsDetected,
+    DoorsEvaluated,
+    Event,
+    Labelled,
+    MissionStarted,
+    Photographed,
+    Registered,
+    Remarked,
+    RoomEntered,
+    RoomsTied,
+    Scanned,
+    Structured,
+)
+from mission.explored_building import ExploredBuilding
+from mission.explored_room import ExploredRoom
+from mission.recorded_mopad import RecordedMopad
+from mission.registration import Registrar
+from mission.rigid import Pose
+from mission.stopwatch import Stopwatch
+from mission.structure import Structure
+from mission.surveyor import Surveyor
+from mission.versions import versions
+from mission.voxels import VoxelModel
+from sim.door_truth import DoorTruth
+
+UNUSED = (Coloured, DoorsDetected)
+"""What need not be read of a recording that is judged again: large, and made anew."""
+_MADE_ANEW = (*UNUSED, Labelled, DoorsEvaluated)
+
+
+class Redetection:
+    """Judges a recorded mission again."""
+
+    def __init__(self, started: MissionStarted, config: MissionConfig, *, stopwatch: Stopwatch | None = None) -> None:
+        """Begin as the mission began.
+
+        Args:
+            started: Its first event.
+            config: Parameters of all stages: those of the recording, or changed ones.
+            stopwatch: Counts the time of each stage.
+        """
+        self._started, self._config = started, config
+        self._mopad = RecordedMopad(started.base_from_scanner)
+        mopad, stopwatch = cast(Any, self._mopad), stopwatch or Stopwatch()
+        self._surveyor = Surveyor(self, mopad, config, stopwatch, seed=started.seed)
+        self._building = ExploredBuilding(config.links)
+        self._completion = Completion(
+            self._building,
+            started.footprint,
+            config,
+            stopwatch,
+            event=self._surveyor.event,
+            true_doors=self.true_doors,
+        )
+        self._doors = started.true_doors
+        self._rooms: dict[int, ExploredRoom] = {}
+        self._newest = 0
+        self._beyond = self._room(1)
+        self._understood: dict[int, tuple[Structure, VoxelModel]] = {}
+
+    def true_doors(self) -> tuple[DoorTruth, ...]:
+        """As they stood then: for the comparison only."""
+        return self._doors
+
+    def run(self, recorded: Iterator[Event]) -> Iterator[Event]:
+        """Tell the mission again.
+
+        Args:
+            recorded: Its events after the first; those of `UNUSED` kinds may be left out.
+        """
+        yield self._begun()
+        events = _Ahead(recorded)
+        for event in events:
+            self._mopad.time, self._surveyor.room = event.time, event.room
+            match event:
+                case RoomEntered():
+                    yield self._entered(event)
+                case Scanned():
+                    yield from self._scan(event, events)
+                case Structured():
+                    yield from self._understand(event.room)
+                case RoomsTied():
+                    if isinstance(events.next, DoorsEvaluated):
+                        self._doors = events.next.true_doors
+                    yield from self._complete(event.room)
+                case _ if not isinstance(event, _MADE_ANEW):
+                    yield self._surveyor.again(event)
+
+    def _begun(self) -> MissionStarted:
+        old = self._started
+        content = {name: getattr(old, name) for name in vars(old) if name not in {"step", "time", "room"}}
+        changed = {"config": self._config.model_dump(mode="json"), "versions": versions()}
+        begun: MissionStarted = self._surveyor.event(MissionStarted, **content | changed)
+        return begun
+
+    def _room(self, number: int) -> ExploredRoom:
+        registrar = Registrar(self._config.registration)
+        return ExploredRoom(number, self._started.footprint, self._config, registrar)
+
+    def _entered(self, event: RoomEntered) -> RoomEntered:
+        """Begin a room; one that was not judged by now was none."""
+        if self._newest not in self._building.rooms:
+            self._building.drop(self._newest)
+        number, place = event.room, event.world_from_base[:3, 3]
+        if event.how == "door":
+            assert event.before is not None
+            self._building.enter_from(event.before, number, place)
+        else:
+            self._building.begin(number, place, event.how)
+            self._beyond = self._room(number)
+        self._rooms[number], self._newest = self._beyond, number
+        content = {name: getattr(event, name) for name in vars(event) if name not in {"step", "time", "room"}}
+        placed: dict[str, Pose] = {"world_from_room": self._building.world_from_room[number]}
+        entered: RoomEntered = self._surveyor.event(RoomEntered, **content | placed)
+        return entered
+
+    def _scan(self, scanned: Scanned, events: _Ahead) -> Iterator[Event]:
+        """Register and colour a scan again: one of the room, or without photographs one from a doorway."""
+        photographed = None
+        for event in events:
+            match event:
+                case Remarked():
+                    self._mopad.news.append(event.text)
+                case Photographed():
+                    photographed = event
+                case Registered():
+                    self._mopad.stand(scanned, photographed, event)
+                    break
+                case _:
+                    raise MissionError(f"scan {scanned.scan_number} was not registered")
+        else:
+            return  # the recording ends here
+        if not event.accepted:
+            next(events, None)  # the remark that says so is made anew
+        room = self._rooms[scanned.room]
+        if photographed is not None:
+            yield from self._surveyor.scan_here(room, photograph=True)
+        else:
+            self._beyond = self._room(self._newest + 1)
+            yield from self._surveyor.scan_threshold(room, self._beyond)
+
+    def _understand(self, number: int) -> Iterator[Event]:
+        self._understood.pop(number, None)
+        try:
+            self._understood[number] = yield from self._surveyor.understand(self._rooms[number])
+        except MissionError as error:
+            yield self._surveyor.remark(f"room {number} is left out: {error}")
+
+    def _complete(self, number: int) -> Iterator[Event]:
+        if number in self._understood:
+            yield from self._completion.complete(self._rooms[number], *self._understood.pop(number))
+
+
+class _Ahead:
+    """An iterator that knows the next event."""
+
+    def __init__(self, events: Iterator[Event]) -> None:
+        self._events = events
+        self.next = next(events, None)
+
+    def __iter__(self) -> _Ahead:
+        return self
+
+    def __next__(self) -> Event:
+        event = self.next
+        if event is None:
+            raise StopIteration
+        self.next = next(self._events, None)
+        return event
