@@ -134,13 +134,13 @@ def _viewer(size: str) -> Iterator[ViewerClient]:
 def _open(viewer: ViewerClient, recording: Path, step: int | None) -> None:
     """Load a recording to its end and put the viewer at a step."""
     viewer.open(str(recording.resolve()))
-    opened = _wait(lambda: viewer.get_state().recordings or None, f"the viewer to open {recording}")[0].store_id
+    _wait(lambda: viewer.get_state().recordings or None, f"the viewer to open {recording}")
     _wait(lambda: None if viewer.get_state().loading else True, f"the viewer to read {recording}")
     timelines = {line.name: line for shown in viewer.get_state().recordings for line in shown.timelines}
     if "step" not in timelines:
         raise ScreenshotError(f"not the recording of a mission, which has a timeline `step`: {recording}")
-    last = timelines["step"].end if step is None else step
-    viewer.set_time("step", sequence=last, play_state="paused", recording=opened)
+    last = timelines["step"].end or 0
+    viewer.set_time("step", sequence=last if step is None else step, play_state="paused")
 
 
 def _root(layout: dict[str, Any]) -> dict[str, Any]:
