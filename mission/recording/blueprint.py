@@ -10,6 +10,7 @@ import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from mission.recording import entities
+from mission.recording.legends import COLUMN, ROW
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,8 @@ class WallTab:
     first_view: int | None
     """The one to open; None where there is none."""
     has_doors: bool
+    shape: tuple[int, int]
+    """Height and width of its images [px]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,14 +73,12 @@ def _mission(view: Outlook) -> rrb.Container:
     hidden = rrb.EntityBehavior(visible=False)
     world = rrb.Spatial3DView(
         origin=entities.WORLD,
-        contents=["$origin/**", f"- {entities.SHOTS}/**"],
+        contents=["$origin/**", f"- {entities.SHOTS}/**", f"- {entities.CAMERA}/doors/**"],
         overrides={entity: hidden for entity in (entities.CEILINGS, entities.VOXELS, entities.CLUTTER, entities.GRID)},
         eye_controls=rrb.EyeControls3D(position=view.eye, look_target=view.target, eye_up=(0, 0, 1)),
         name="Room",
     )
-    photo = rrb.Spatial2DView(
-        origin=entities.CAMERA, contents=["$origin/**", f"{entities.DOORS}/**"], name="Photograph"
-    )
+    photo = rrb.Spatial2DView(origin=entities.CAMERA, name="Photograph")
     graph = rrb.GraphView(origin=entities.GRAPH, name="Rooms and doors")
     side = rrb.Vertical(rrb.Tabs(photo, graph, active_tab=0), _scatter())
     lanes = rrb.StateTimelineView(origin=entities.STATES, name="What the mission does")
@@ -90,46 +91,49 @@ def _wall(wall: WallTab) -> rrb.Container:
     """The paper's stages from left to right, top to bottom."""
     root = entities.stages(wall.name)
     merged = f"+ {root}/merged/colour"
-    views = rrb.Tabs(*(_view(root, number) for number in range(wall.views)), active_tab=wall.first_view)
+    beams = f"{root}/openings/visibility/**"
+    area = f"+ {root}/wall_area"
+    views = rrb.Tabs(*(_view(wall, number) for number in range(wall.views)), active_tab=wall.first_view)
     cells: list[rrb.Container | rrb.View] = [
-        _image("Merged (4.2) and the doors found", root, merged, f"+ {root}/merged/doors/**"),
-        _image("Depth from the wall plane, -15 to 15 cm", root, f"+ {root}/merged/depth"),
+        _image(wall, "Merged (4.2) and the doors found", merged, f"+ {root}/merged/doors/**"),
+        _image(wall, "Depth from the wall plane", f"+ {root}/merged/depth/**", below=ROW),
         rrb.Tabs(
-            _image("Openings (5)", root, f"+ {root}/openings/**", f"- {root}/openings/visibility"),
-            _image("What the beams met", root, f"+ {root}/openings/visibility"),
+            _image(wall, "Openings (5)", f"+ {root}/openings/**", f"- {beams}", below=ROW),
+            _image(wall, "What the beams met", f"+ {beams}", below=ROW),
             active_tab=0,
         ),
-        _image("Wall area (6.1): clusters of seeds", root, f"+ {root}/wall_area/clusters", f"+ {root}/wall_area/seeds"),
-        _image("Wall area (6.1): on the wall", root, merged, f"+ {root}/wall_area/mask"),
-        _image("Edges (6.2): colour, depth, both", root, f"+ {root}/edges/**"),
-        _image("Candidates (6.2): accepted, rejected by", root, merged, f"+ {root}/candidates/**"),
+        _image(wall, "Wall area (6.1): clusters of seeds", f"{area}/clusters", f"{area}/seeds/**", below=ROW),
+        _image(wall, "Wall area (6.1): on the wall", merged, f"{area}/mask/**", below=ROW),
+        _image(wall, "Edges (6.2)", f"+ {root}/edges/**", below=ROW),
+        _image(wall, "Candidates (6.2), accepted or rejected by", merged, f"+ {root}/candidates/**", beside=COLUMN),
         _photograph(wall),
     ]
     stages = rrb.Grid(*cells, grid_columns=2)
     return rrb.Horizontal(views, stages, column_shares=[1, 2], name=f"Wall {wall.name}", visible=wall.has_doors)
 
 
-def _view(root: str, number: int) -> rrb.Container:
+def _view(wall: WallTab, number: int) -> rrb.Container:
     """Section 4 for one scan."""
-    view = f"{root}/view/{number}"
+    view = f"{entities.stages(wall.name)}/view/{number}"
     return rrb.Vertical(
-        _image("Seen", root, f"+ {view}/colour"),
-        _image("Highlights (4.1)", root, f"+ {view}/colour", f"+ {view}/highlights/**"),
-        _image("Inpainted (4.2)", root, f"+ {view}/inpainted"),
+        _image(wall, "Seen", f"+ {view}/colour"),
+        _image(wall, "Highlights (4.1)", f"+ {view}/colour", f"+ {view}/highlights/**", below=ROW),
+        _image(wall, "Inpainted (4.2)", f"+ {view}/inpainted"),
         name=f"View {number + 1}",
     )
 
 
 def _photograph(wall: WallTab) -> rrb.View:
+    return rrb.Spatial2DView(origin=f"{entities.SHOTS}/{wall.name}", name="Photograph with the doors")
+
+
+def _image(wall: WallTab, name: str, *contents: str, below: float = 0.0, beside: float = 0.0) -> rrb.View:
+    """Images of a wall, with room for legends below and beside them [heights of the image]."""
+    height, width = wall.shape
+    bounds = rrb.VisualBounds2D(x_range=(0, width + beside * height), y_range=(0, (1 + below) * height))
     return rrb.Spatial2DView(
-        origin=f"{entities.SHOTS}/{wall.name}",
-        contents=["$origin/**", f"{entities.DOORS}/{wall.name}/**"],
-        name="Photograph with the doors",
+        origin=entities.stages(wall.name), contents=list(contents), name=name, visual_bounds=bounds
     )
-
-
-def _image(name: str, root: str, *contents: str) -> rrb.View:
-    return rrb.Spatial2DView(origin=root, contents=list(contents), name=name)
 
 
 def _results() -> rrb.Container:

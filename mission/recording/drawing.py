@@ -166,11 +166,15 @@ def quads(corners: Sequence[NDArray[np.float64]]) -> tuple[NDArray[np.float64], 
 
 def angle_label(evaluation: DoorEvaluation) -> str:
     """Estimate beside truth: "34.8 deg (joint 35.0)"; of a door that slides "45 % open (joint 44 %)"."""
+    door = evaluation.door
+    return f"{opening_text(door.opening_angle, door.opened_fraction)} {true_label(evaluation)}"
+
+
+def true_label(evaluation: DoorEvaluation) -> str:
+    """Unit and truth: "deg (joint 35.0)"."""
     joint = opening_text(evaluation.true_angle, evaluation.true_opened_fraction)
     truth = "no such door" if evaluation.true_name is None else f"joint {joint}"
-    door = evaluation.door
-    unit = "open" if door.kind == "sliding" else "deg"
-    return f"{opening_text(door.opening_angle, door.opened_fraction)} {unit} ({truth})"
+    return f"{'open' if evaluation.door.kind == 'sliding' else 'deg'} ({truth})"
 
 
 def jpeg(image: NDArray[np.uint8], *, quality: int = DISPLAY_QUALITY) -> bytes:

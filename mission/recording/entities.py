@@ -66,10 +66,16 @@ LEGEND = (
     (HIGHLIGHT, "highlight", (230, 40, 160, 255)),
     (COLOUR_EDGE, "colour edge", (255, 170, 60, 255)),
     (DEPTH_EDGE, "depth edge", (70, 190, 255, 255)),
-    (BOTH_EDGES, "colour and depth edge", (255, 255, 255, 255)),
+    (BOTH_EDGES, "both", (255, 255, 255, 255)),
     (WALL_AREA, "wall area", (90, 200, 110, 255)),
 )
 """Class id, label and colour of all that is drawn by class."""
+
+
+def legend(number: int) -> tuple[str, tuple[int, int, int]]:
+    """Label and colour of a class."""
+    label, (red, green, blue, _) = next((label, colour) for known, label, colour in LEGEND if known == number)
+    return label, (red, green, blue)
 
 
 def child(parent: str, *parts: object) -> str:

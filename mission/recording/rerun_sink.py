@@ -19,6 +19,7 @@ from mission.recording.blueprint import WallTab, blueprint, outlook
 from mission.recording.drawing import outline
 from mission.recording.live import Stream, flush
 from mission.recording.rerun_doors import Doors
+from mission.recording.rerun_photos import Photos
 from mission.recording.rerun_plans import Plans
 from mission.recording.rerun_plots import Plots
 from mission.recording.rerun_results import Results
@@ -30,7 +31,7 @@ logger = logging.getLogger(__name__)
 
 APPLICATION = "door-mission"
 
-_Drawer = World | Plans | Doors | Walls | Rooms | Plots | Results
+_Drawer = World | Plans | Doors | Photos | Walls | Rooms | Plots | Results
 
 
 class RerunSink:
@@ -102,7 +103,7 @@ class RerunSink:
         legend = [rr.AnnotationInfo(number, label, colour) for number, label, colour in entities.LEGEND]
         for root in (entities.WORLD, entities.STAGES_OF_WALLS):
             rec.log(root, rr.AnnotationContext(legend), static=True)
-        self._drawers = [drawer(rec) for drawer in (World, Plans, Doors, Walls, Rooms, Plots, Results)]
+        self._drawers = [drawer(rec) for drawer in (World, Plans, Doors, Photos, Walls, Rooms, Plots, Results)]
 
     def _lay_out(self, event: Event) -> None:
         """Fit the viewer's layout to what is known by now: an interrupted recording opens well, too.
@@ -142,6 +143,7 @@ def _wall_tabs(event: DoorsDetected) -> list[WallTab]:
             views=len(result.views),
             first_view=int(np.argmax([h.regions.sum() for h in result.highlights])) if result.views else None,
             has_doors=bool(result.doors),
+            shape=(result.merged.depth.shape[0], result.merged.depth.shape[1]),
         )
         for number, result in enumerate(event.results, start=1)
     ]

@@ -180,7 +180,8 @@ def _wait(attempt: Callable[[], T | None], what: str, *, seconds: float = 180.0)
 
 
 def _save(picture: NDArray[np.uint8], path: Path) -> None:
-    Image.fromarray(picture).quantize(COLOURS, dither=Image.Dither.NONE).save(path, optimize=True)
+    """As a PNG of few colours: the few pixels of a rare colour need k-means, or they get a common one."""
+    Image.fromarray(picture).quantize(COLOURS, kmeans=4, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 if __name__ == "__main__":
