@@ -9,7 +9,7 @@ import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from mission.recording import entities
+from mission.recording import entities, rerun_figures
 from mission.recording.legends import COLUMN, ROW
 
 
@@ -41,7 +41,7 @@ class Outlook:
     """(N, 3) what is to be in view [m]."""
 
 
-_BARS = rrb.VisualBounds2D(x_range=(-10, 110), y_range=(-10, 120))
+NO_LEGEND = rrb.PlotLegend(visible=False)
 
 
 def outlook(points: NDArray[np.float64]) -> Outlook:
@@ -70,21 +70,38 @@ def tabbed(tabs: Sequence[rrb.Container], *, timeline: str) -> rrb.Blueprint:
 
 
 def _mission(view: Outlook) -> rrb.Container:
+    eye = rrb.EyeControls3D(position=view.eye, look_target=view.target, eye_up=(0, 0, 1))
     hidden = rrb.EntityBehavior(visible=False)
-    world = rrb.Spatial3DView(
+    not_here = [f"- {entity}/**" for entity in (entities.SHOTS, entities.MAP, f"{entities.CAMERA}/doors")]
+    room = rrb.Spatial3DView(
         origin=entities.WORLD,
-        contents=["$origin/**", f"- {entities.SHOTS}/**", f"- {entities.CAMERA}/doors/**"],
-        overrides={entity: hidden for entity in (entities.CEILINGS, entities.VOXELS, entities.CLUTTER, entities.GRID)},
-        eye_controls=rrb.EyeControls3D(position=view.eye, look_target=view.target, eye_up=(0, 0, 1)),
+        contents=["$origin/**", *not_here],
+        overrides={entities.CEILINGS: hidden},
+        eye_controls=eye,
+        line_grid=False,
         name="Room",
     )
+    on_demand = [
+        _map(eye, "Voxel labels", entities.VOXELS),
+        _map(eye, "Clutter", entities.CLUTTER),
+        _map(eye, "Occupancy grid", entities.GRID),
+    ]
     photo = rrb.Spatial2DView(origin=entities.CAMERA, name="Photograph")
     graph = rrb.GraphView(origin=entities.GRAPH, name="Rooms and doors")
     side = rrb.Vertical(rrb.Tabs(photo, graph, active_tab=0), _scatter())
-    lanes = rrb.StateTimelineView(origin=entities.STATES, name="What the mission does")
-    above = rrb.Horizontal(world, side, column_shares=[5, 2])
-    below = rrb.Horizontal(lanes, _log(), column_shares=[5, 4])
+    lanes = rrb.StateTimelineView(
+        origin="/", contents=[entities.ACTIVITY, f"{entities.DOOR_STATES}/**"], name="What the mission does"
+    )
+    key = rrb.TextDocumentView(origin=entities.KEY, name="What is what")
+    above = rrb.Horizontal(rrb.Tabs(room, *on_demand, active_tab=0), side, column_shares=[5, 2])
+    below = rrb.Horizontal(lanes, rrb.Tabs(_log(), key, active_tab=0), column_shares=[5, 4])
     return rrb.Vertical(above, below, row_shares=[3, 1], name="Mission")
+
+
+def _map(eye: rrb.EyeControls3D, name: str, shown: str) -> rrb.View:
+    """What the planner thinks of the room, without the cloud, which would bury it."""
+    contents = [f"{entity}/**" for entity in (shown, entities.WALLS, entities.ROBOT, entities.DRIVEN, entities.PLANS)]
+    return rrb.Spatial3DView(origin=entities.WORLD, contents=contents, eye_controls=eye, line_grid=False, name=name)
 
 
 def _wall(wall: WallTab) -> rrb.Container:
@@ -139,31 +156,36 @@ def _image(wall: WallTab, name: str, *contents: str, below: float = 0.0, beside:
 def _results() -> rrb.Container:
     summary = rrb.TextDocumentView(origin=entities.SUMMARY, name="Summary")
     configuration = rrb.TextDocumentView(origin=entities.CONFIGURATION, name="Configuration")
+    detector, mission = "Detector: time per stage", "Mission: time per stage (wall clock)"
     figures = rrb.Grid(
-        rrb.Spatial2DView(origin=entities.ERRORS, name="Angle error", visual_bounds=_BARS),
-        rrb.Spatial2DView(origin=entities.STAGES, name="Detector: time per stage (wall clock)", visual_bounds=_BARS),
-        _percent(),
-        rrb.TimeSeriesView(
-            origin=entities.ANGLES,
-            name="Opening angles [deg]: joints and estimates",
-            axis_y=rrb.ScalarAxis(range=(-5, 110)),
-            plot_legend=rrb.PlotLegend("LeftTop"),
-        ),
+        rrb.Spatial2DView(origin=entities.ERRORS, name="Angle error", visual_bounds=rerun_figures.BARS),
+        rrb.Spatial2DView(origin=entities.COVERED, name="Coverage per scan", visual_bounds=rerun_figures.COVERAGE),
+        rrb.Spatial2DView(origin=entities.MISSION_STAGES, name=mission, visual_bounds=rerun_figures.BARS),
+        rrb.Spatial2DView(origin=entities.STAGES, name=detector, visual_bounds=rerun_figures.BARS),
+        rrb.Tabs(_angles(), _percent(), active_tab=0),
+        rrb.TimeSeriesView(origin=entities.MEMORY, name="Memory [MB], most so far", plot_legend=NO_LEGEND),
         grid_columns=2,
     )
-    return rrb.Horizontal(summary, figures, configuration, column_shares=[4, 5, 2], name="Results")
+    return rrb.Horizontal(summary, figures, configuration, column_shares=[7, 9, 3], name="Results")
 
 
 def _scatter() -> rrb.View:
     return rrb.Spatial2DView(
-        origin=entities.SCATTER,
-        name="Opening angle: estimate against joint",
-        visual_bounds=rrb.VisualBounds2D(x_range=(-40, 190), y_range=(-120, 28)),
+        origin=entities.SCATTER, name="Opening angle: estimate against joint", visual_bounds=rerun_figures.ANGLES
+    )
+
+
+def _angles() -> rrb.View:
+    return rrb.TimeSeriesView(
+        origin=entities.ANGLES,
+        name="Opening angles [deg]",
+        axis_y=rrb.ScalarAxis(range=(-5, 110)),
+        plot_legend=rrb.PlotLegend("LeftTop"),
     )
 
 
 def _percent() -> rrb.View:
-    return rrb.TimeSeriesView(origin=entities.COVERAGE, name="Seen so far [%]", axis_y=rrb.ScalarAxis(range=(0, 105)))
+    return rrb.TimeSeriesView(origin=entities.COVERAGE, name="Seen [%]", axis_y=rrb.ScalarAxis(range=(0, 105)))
 
 
 def _log() -> rrb.View:

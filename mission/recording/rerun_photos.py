@@ -24,7 +24,7 @@ from mission.events import (
 from mission.recording import entities
 from mission.recording.drawing import TRUTH_COLOUR, angle_label, palette
 from mission.recording.entities import child
-from mission.recording.rerun_world import log_pose
+from mission.recording.rerun_places import log_pose
 from mission.recording.room_frames import RoomFrames
 from mission.recording.shots import Line, Shot, shot
 from mission.rigid import Pose

@@ -10,7 +10,8 @@ import rerun as rr
 from mission.events import Event, Labelled, Planned, RoomEntered, RoomsTied, Structured
 from mission.recording import entities
 from mission.recording.drawing import CELL_COLOURS, score_colours
-from mission.recording.rerun_world import LIFT, PLAN_COLOUR, hover, log_pose
+from mission.recording.rerun_places import log_pose
+from mission.recording.rerun_world import LIFT, PLAN_COLOUR, hover
 from mission.rigid import Pose
 
 CLUTTER_COLOUR = (190, 110, 60)

@@ -18,6 +18,8 @@ from mission.recording import entities
 from mission.recording.blueprint import WallTab, blueprint, outlook
 from mission.recording.drawing import outline
 from mission.recording.live import Stream, flush
+from mission.recording.rerun_clouds import Clouds
+from mission.recording.rerun_costs import Costs
 from mission.recording.rerun_doors import Doors
 from mission.recording.rerun_photos import Photos
 from mission.recording.rerun_plans import Plans
@@ -26,12 +28,13 @@ from mission.recording.rerun_results import Results
 from mission.recording.rerun_rooms import Rooms
 from mission.recording.rerun_walls import Walls
 from mission.recording.rerun_world import World
+from mission.stopwatch import Stopwatch
 
 logger = logging.getLogger(__name__)
 
 APPLICATION = "door-mission"
 
-_Drawer = World | Plans | Doors | Photos | Walls | Rooms | Plots | Results
+_Drawer = World | Clouds | Plans | Doors | Photos | Walls | Rooms | Plots | Results | Costs
 
 
 class RerunSink:
@@ -41,15 +44,17 @@ class RerunSink:
     is simulated time, `scan` and `room` count. Wall clock times are not recorded, save those that the detector took.
     """
 
-    def __init__(self, path: Path, streams: Sequence[Stream] = ()) -> None:
+    def __init__(self, path: Path, streams: Sequence[Stream] = (), *, stopwatch: Stopwatch | None = None) -> None:
         """Record into a file, which is overwritten; it is opened by the first event.
 
         Args:
             path: Of the file.
             streams: To viewers that follow; the file does not suffer when they go away.
+            stopwatch: Of a mission that runs now; None for one that is over, which takes nothing any more.
         """
         self._path = path
         self._streams = tuple(streams)
+        self._stopwatch = stopwatch
         self._followed = True
         self._closing = ExitStack()
         self._drawers: list[_Drawer] = []
@@ -103,7 +108,9 @@ class RerunSink:
         legend = [rr.AnnotationInfo(number, label, colour) for number, label, colour in entities.LEGEND]
         for root in (entities.WORLD, entities.STAGES_OF_WALLS):
             rec.log(root, rr.AnnotationContext(legend), static=True)
-        self._drawers = [drawer(rec) for drawer in (World, Plans, Doors, Photos, Walls, Rooms, Plots, Results)]
+        self._drawers = [drawer(rec) for drawer in (World, Clouds, Plans, Doors, Photos, Walls, Rooms, Plots, Results)]
+        if self._stopwatch:
+            self._drawers.append(Costs(rec, self._stopwatch))
 
     def _lay_out(self, event: Event) -> None:
         """Fit the viewer's layout to what is known by now: an interrupted recording opens well, too.

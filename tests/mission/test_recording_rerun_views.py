@@ -15,7 +15,7 @@ from detector.result import Candidate, Rectangle
 from mission import events
 from mission.events import DoorsEvaluated, Drove, Labelled, Planned
 from mission.recording.blueprint import outlook
-from mission.recording.rerun_results import LABEL, label_places
+from mission.recording.rerun_figures import column_heights
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
 from mission.recording.shots import Shot
 from tests.mission import recording_room as made
@@ -58,9 +58,11 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "/plots/angle/estimate/1.2-a",
         "/plots/coverage/1/walls",
         "/plots/coverage/1/structure",
-        "/states/activity",
+        "/activity",
+        "/door/1.2-a",
         "/report/summary",
         "/report/configuration",
+        "/report/key",
     ],
 )
 def test_the_tree_has(recording: Path, entity: str) -> None:
@@ -106,23 +108,22 @@ def test_walls_and_structure_are_two_lines_of_what_was_seen(recording: Path) -> 
     assert colours[0] != colours[1]
 
 
-def test_labels_of_doors_that_are_all_closed_do_not_hide_each_other() -> None:
-    points = [
-        (0.0, 0.0),
-        (35.0, -34.0),
-        (0.0, 0.1),
-        (0.0, 0.0),
-        (90.0, -91.0),
-        (0.0, -12.0),
-        (95.0, -20.0),
-        (60.0, -21.0),
-    ]
-    places = np.array(label_places(points))
-    width, height = LABEL
-    for number, place in enumerate(places):
-        gap = np.abs(np.delete(places, number, axis=0) - place)
-        assert ((gap[:, 0] >= width) | (gap[:, 1] > height - 1e-9)).all()
-    assert places[4] == pytest.approx([90 + 0.53 * width, -91 - height])  # none near: beside its point
+def test_what_is_written_beside_a_figure_is_in_lines_of_their_own() -> None:
+    few, many = (np.diff(column_heights(count, top=-118.0)) for count in (4, 26))
+    assert few == pytest.approx([12.0] * 3)
+    assert many == pytest.approx([5.0] * 25)  # 130 / 26
+
+
+def test_angles_are_written_with_their_deviation_beside_the_joint(recording: Path) -> None:
+    labels = column(recording, "/figures/angle_against_joint/labels", "Points2D:labels")[-1]
+    assert labels[0] == "1.2-a: 30.0 ± 0.4 deg (joint 31.0)"
+
+
+def test_coverage_is_drawn_scan_by_scan(recording: Path) -> None:
+    shares = [event.voxels.coverage for event in story() if isinstance(event, Labelled)]
+    (strip,) = column(recording, "/figures/coverage/lines", "LineStrips2D:strips")[-1]
+    expected = [(100 * scan / len(shares), -100 * share) for scan, share in enumerate(shares, start=1)]
+    np.testing.assert_allclose(strip, expected, rtol=1e-6)
 
 
 def test_a_door_is_drawn_where_it_was_found_and_labelled_with_its_joint(recording: Path) -> None:
