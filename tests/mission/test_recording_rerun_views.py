@@ -13,11 +13,14 @@ from rerun.chunk import RrdReader
 
 from detector.result import Candidate, Rectangle
 from mission import events
-from mission.events import DoorsEvaluated, Drove, Labelled, Planned
+from mission.events import DoorsEvaluated, Drove, Labelled, MissionStarted, Planned, RoomEntered
 from mission.recording.blueprint import outlook
+from mission.recording.rerun_doors import label_of
 from mission.recording.rerun_figures import column_heights
+from mission.recording.rerun_sink import RerunSink
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
 from mission.recording.shots import Shot
+from mission.stopwatch import Stopwatch
 from tests.mission import recording_room as made
 from tests.mission.recording_room import ESTIMATE, JOINT
 from tests.mission.recording_story import story
@@ -42,6 +45,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "/world/candidates/chosen",
         "/world/map/voxels",
         "/world/map/grid",
+        "/world/map/ceiling_voxels",
         "/world/walls/1/outlines",
         "/world/doors/1.2/1.2-a/leaf",
         "/world/truth/doors/hall\\/door\\ 1",
@@ -242,3 +246,61 @@ def test_what_is_measured_in_a_room_is_drawn_where_the_room_lies(tmp_path: Path)
     registered = next(event for event in told if isinstance(event, events.Registered) and event.room == 2)
     shot = made.pose(0.1, 0) @ registered.world_from_scanner @ made.photo().scanner_from_camera
     np.testing.assert_allclose(column(path, "/world/camera", "Transform3D:translation")[-1][0], shot[:3, 3], atol=1e-6)
+
+
+def test_a_later_scan_adds_what_earlier_ones_did_not_show(tmp_path: Path) -> None:
+    """The second scan sees the first one's points again, and ten new ones outside, 1 m apart."""
+    told = [event for event in story() if isinstance(event, events.MissionStarted | events.RoomEntered)]
+    first = next(event for event in story() if isinstance(event, events.Coloured))
+    view = first.view
+    points_in_world = np.concatenate(
+        [view.points_in_world, np.array([[20.0 + x, 0, 0] for x in range(10)], np.float32)]
+    )
+    count = len(points_in_world)
+    more = replace(
+        view,
+        points_in_world=points_in_world,
+        colours=np.full((count, 3), 9, np.uint8),
+        coloured=np.append(view.coloured, np.ones(10, bool)),
+    )
+    second = replace(first, scan_number=first.scan_number + 1, view=more)
+    path = record(tmp_path / "two.rrd", [*told, first, second])
+    (added,) = points(path, f"/world/scans/{second.scan_number:03d}/points")
+    assert added[:, 0] == pytest.approx(np.arange(20.0, 30.0))
+
+
+def test_points_tell_their_reflectance(tmp_path: Path) -> None:
+    scanned = event_of(events.Scanned)
+    count = int(np.isfinite(scanned.scan.ranges).sum())
+    seen = replace(event_of(events.Coloured), view=made.view(np.random.default_rng(0), count))
+    path = record(tmp_path / "told.rrd", [event_of(MissionStarted), event_of(RoomEntered), scanned, seen])
+    (shown,) = column(path, f"/world/scans/{seen.scan_number:03d}/points", "reflectance_db")
+    assert set(shown) == {-5}  # ranges of 3.0 less 8
+    assert len(shown) == len(points(path, f"/world/scans/{seen.scan_number:03d}/points")[0])
+
+
+def test_two_faces_of_a_door_share_a_label() -> None:
+    here, there = event_of(DoorsEvaluated).doors[0], event_of(DoorsEvaluated).doors[0]
+    assert label_of(here, replace(there, door_id="2.4-a")) == "1.2-a = 2.4-a: 30.0, 30.0 deg (joint 31.0)"
+
+
+def test_of_rooms_that_the_robot_has_left_the_names_remain(tmp_path: Path) -> None:
+    told = story()[:-1]
+    entered = event_of(RoomEntered)
+    told.append(replace(entered, step=len(told), time=told[-1].time, room=2, how="door", door="1.2-a"))
+    path = record(tmp_path / "left.rrd", told)
+    assert column(path, "/world/walls/1/names", "Points3D:show_labels")[-1] == [False]
+    assert column(path, "/world/walls/1/room", "Points3D:labels")[-1] == ["room 1"]
+
+
+def test_time_and_memory_of_a_mission_that_runs_are_drawn_below_timing(tmp_path: Path) -> None:
+    stopwatch = Stopwatch()
+    with stopwatch("scan"):
+        pass
+    with RerunSink(tmp_path / "run.rrd", stopwatch=stopwatch) as sink:
+        for event in story():
+            sink.handle(event)
+    assert column(tmp_path / "run.rrd", "/timing/mission_stages/labels", "Points2D:labels")[-1] == ["scan: 0.0 s"]
+    megabytes = [value for row in column(tmp_path / "run.rrd", "/timing/memory", "Scalars:scalars") for value in row]
+    assert len(megabytes) >= 2
+    assert 50 < megabytes[0] <= megabytes[-1] < 20_000
