@@ -179,6 +179,7 @@ def parser() -> argparse.ArgumentParser:
         help="exit 1 if recall, precision, found (share of the doors) or coverage (of the walls) is below a VALUE "
         "of 0 to 1; may be repeated",
     )
+    _add_viewers(run)
     how = run.add_mutually_exclusive_group()
     how.add_argument("--quiet", action="store_true", help="say nothing but errors")
     how.add_argument("--json", action="store_true", help="print doors and summary as one JSON object, nothing else")
@@ -190,6 +191,22 @@ def parser() -> argparse.ArgumentParser:
     _add_planners(benches)
     _add_speed(benches)
     return commands
+
+
+def _add_viewers(run: OneLineParser) -> None:
+    """Options to follow a mission while it runs."""
+    live = run.add_argument_group("live", "follow the mission in Rerun viewers; its files are written all the same")
+    live.add_argument("--view", action="store_true", help="open a viewer")
+    live.add_argument("--connect", metavar="URL", help="stream to a viewer: rerun+http://HOST:9876/proxy")
+    live.add_argument(
+        "--serve",
+        type=_port,
+        nargs="?",
+        const=9876,
+        metavar="PORT",
+        help="serve the mission to viewers of this machine (127.0.0.1), for as long as it runs (default port: 9876); "
+        "then: rerun rerun+http://127.0.0.1:9876/proxy",
+    )
 
 
 def _add_walls(benches: argparse._SubParsersAction[OneLineParser]) -> None:
@@ -310,6 +327,13 @@ def _add_building(benches: argparse._SubParsersAction[OneLineParser]) -> None:
 
 def _seed(text: str) -> int:
     return _whole(text, least=0)
+
+
+def _port(text: str) -> int:
+    port = _whole(text, least=1)
+    if port > 65535:
+        raise argparse.ArgumentTypeError(f"expected a port from 1 to 65535, got {text!r}")
+    return port
 
 
 def _positive(text: str) -> int:

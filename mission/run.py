@@ -8,10 +8,11 @@ import json
 import logging
 import math
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
@@ -25,12 +26,16 @@ from mission.interrupts import Interrupts
 from mission.memory import release_freed_memory
 from mission.mission import Mission
 from mission.progress import TerminalProgress
+from mission.recording.cost import recording_cost
 from mission.report import Report, write_json
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
 from sim.errors import SimError
 from sim.obstacles import Obstacle
 from sim.scene import load_scene
+
+if TYPE_CHECKING:  # rerun takes a while to import
+    from mission.recording.live import Stream
 
 logger = logging.getLogger(__name__)
 
@@ -40,6 +45,8 @@ METRICS = ("recall", "precision", "found", "coverage")
 
 def run(options: argparse.Namespace) -> int:
     """Run a mission as the command line says and return the exit status."""
+    from mission.recording.live import address, live_streams
+
     start = perf_counter()
     silent = options.quiet or options.json
     logging.basicConfig(level=logging.ERROR if silent else logging.WARNING, format="%(levelname)s: %(message)s")
@@ -51,6 +58,9 @@ def run(options: argparse.Namespace) -> int:
         config = read_config(options.config, [*options.set, *_shorthands(options)])
         angles = {name: math.radians(angle) for name, angle in (_setting("--door", text) for text in options.door)}
         obstacles = [_obstacle(text) for text in options.obstacle]
+        streams = live_streams(view=options.view, connect=options.connect, serve=options.serve)
+        if options.serve is not None:
+            console.print(f"watch the mission:  rerun {address(options.serve)}", highlight=False, soft_wrap=True)
         scene = load_scene(
             find_scene(options.scene), door_angles=angles, keyframe=options.keyframe, obstacles=obstacles
         )
@@ -58,7 +68,9 @@ def run(options: argparse.Namespace) -> int:
         stopwatch = Stopwatch(progress.stage)
         with Mission(scene, config, seed=options.seed, stopwatch=stopwatch) as mission:
             folder = make_folder(options.out, scene_name=options.scene)
-            report, status = carry_out(mission, folder, progress=progress, stopwatch=stopwatch, start=start)
+            report, status = carry_out(
+                mission, folder, progress=progress, stopwatch=stopwatch, start=start, streams=streams
+            )
     except (SimError, MissionError) as error:
         print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
         return BAD_INPUT
@@ -70,7 +82,13 @@ def run(options: argparse.Namespace) -> int:
 
 
 def carry_out(
-    mission: Mission, folder: Path, *, progress: TerminalProgress, stopwatch: Stopwatch, start: float
+    mission: Mission,
+    folder: Path,
+    *,
+    progress: TerminalProgress,
+    stopwatch: Stopwatch,
+    start: float,
+    streams: Sequence[Stream] = (),
 ) -> tuple[Report, int]:
     """Run the mission into all sinks; whatever happens, the files are complete at the end.
 
@@ -80,6 +98,7 @@ def carry_out(
         progress: Tells a person.
         stopwatch: That the mission counts its stages with.
         start: Of the program, by `perf_counter` [s].
+        streams: To viewers that follow.
 
     Returns:
         What was found, and the exit status.
@@ -93,7 +112,7 @@ def carry_out(
         sinks: list[Sink] = [
             report,
             files.enter_context(progress),
-            files.enter_context(RerunSink(folder / "mission.rrd")),
+            files.enter_context(RerunSink(folder / "mission.rrd", streams, stopwatch=stopwatch)),
             files.enter_context(McapSink(folder / "mission.mcap")),
         ]
         status = _pump(mission, sinks, interrupts, stopwatch)
@@ -102,8 +121,11 @@ def carry_out(
 
 def _write_reports(folder: Path, report: Report, stopwatch: Stopwatch, start: float) -> None:
     write_json(folder / "doors.json", report.doors())
-    summary = report.summary(stopwatch.seconds, perf_counter() - start)
-    write_json(folder / "summary.json", {"arguments": sys.argv[1:]} | summary)
+    wall_clock = perf_counter() - start
+    scans = sum(room.scans for room in report.rooms.values())
+    cost = recording_cost(folder, scans=scans, seconds=stopwatch.seconds.get("recording", 0.0), wall_clock=wall_clock)
+    summary = {"arguments": sys.argv[1:]} | report.summary(stopwatch.seconds, wall_clock) | {"recording": cost}
+    write_json(folder / "summary.json", summary)
 
 
 def _pump(mission: Mission, sinks: list[Sink], interrupts: Interrupts, stopwatch: Stopwatch) -> int:

@@ -9,7 +9,8 @@ import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from mission.recording import entities
+from mission.recording import entities, rerun_figures
+from mission.recording.legends import COLUMN, ROW
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,8 @@ class WallTab:
     first_view: int | None
     """The one to open; None where there is none."""
     has_doors: bool
+    shape: tuple[int, int]
+    """Height and width of its images [px]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +41,7 @@ class Outlook:
     """(N, 3) what is to be in view [m]."""
 
 
-_BARS = rrb.VisualBounds2D(x_range=(-10, 110), y_range=(-10, 120))
+NO_LEGEND = rrb.PlotLegend(visible=False)
 
 
 def outlook(points: NDArray[np.float64]) -> Outlook:
@@ -67,99 +70,122 @@ def tabbed(tabs: Sequence[rrb.Container], *, timeline: str) -> rrb.Blueprint:
 
 
 def _mission(view: Outlook) -> rrb.Container:
+    eye = rrb.EyeControls3D(position=view.eye, look_target=view.target, eye_up=(0, 0, 1))
     hidden = rrb.EntityBehavior(visible=False)
-    world = rrb.Spatial3DView(
+    not_here = [f"- {entity}/**" for entity in (entities.SHOTS, entities.MAP, f"{entities.CAMERA}/doors")]
+    room = rrb.Spatial3DView(
         origin=entities.WORLD,
-        contents=["$origin/**", f"- {entities.SHOTS}/**"],
-        overrides={entity: hidden for entity in (entities.CEILINGS, entities.VOXELS, entities.CLUTTER, entities.GRID)},
-        eye_controls=rrb.EyeControls3D(position=view.eye, look_target=view.target, eye_up=(0, 0, 1)),
+        contents=["$origin/**", *not_here],
+        overrides={entities.CEILINGS: hidden},
+        eye_controls=eye,
+        line_grid=False,
         name="Room",
     )
-    photo = rrb.Spatial2DView(
-        origin=entities.CAMERA, contents=["$origin/**", f"{entities.DOORS}/**"], name="Photograph"
-    )
+    on_demand = [
+        _map(eye, "Voxel labels", entities.VOXELS),
+        _map(eye, "Clutter", entities.CLUTTER),
+        _map(eye, "Occupancy grid", entities.GRID),
+    ]
+    photo = rrb.Spatial2DView(origin=entities.CAMERA, name="Photograph")
     graph = rrb.GraphView(origin=entities.GRAPH, name="Rooms and doors")
     side = rrb.Vertical(rrb.Tabs(photo, graph, active_tab=0), _scatter())
-    lanes = rrb.StateTimelineView(origin=entities.STATES, name="What the mission does")
-    above = rrb.Horizontal(world, side, column_shares=[5, 2])
-    below = rrb.Horizontal(lanes, _log(), column_shares=[5, 4])
+    lanes = rrb.StateTimelineView(
+        origin="/", contents=[entities.ACTIVITY, f"{entities.DOOR_STATES}/**"], name="What the mission does"
+    )
+    key = rrb.TextDocumentView(origin=entities.KEY, name="What is what")
+    above = rrb.Horizontal(rrb.Tabs(room, *on_demand, active_tab=0), side, column_shares=[5, 2])
+    below = rrb.Horizontal(lanes, rrb.Tabs(_log(), key, active_tab=0), column_shares=[5, 4])
     return rrb.Vertical(above, below, row_shares=[3, 1], name="Mission")
+
+
+def _map(eye: rrb.EyeControls3D, name: str, shown: str) -> rrb.View:
+    """What the planner thinks of the room, without the cloud, which would bury it."""
+    contents = [f"{entity}/**" for entity in (shown, entities.WALLS, entities.ROBOT, entities.DRIVEN, entities.PLANS)]
+    return rrb.Spatial3DView(origin=entities.WORLD, contents=contents, eye_controls=eye, line_grid=False, name=name)
 
 
 def _wall(wall: WallTab) -> rrb.Container:
     """The paper's stages from left to right, top to bottom."""
     root = entities.stages(wall.name)
     merged = f"+ {root}/merged/colour"
-    views = rrb.Tabs(*(_view(root, number) for number in range(wall.views)), active_tab=wall.first_view)
+    beams = f"{root}/openings/visibility/**"
+    area = f"+ {root}/wall_area"
+    views = rrb.Tabs(*(_view(wall, number) for number in range(wall.views)), active_tab=wall.first_view)
     cells: list[rrb.Container | rrb.View] = [
-        _image("Merged (4.2) and the doors found", root, merged, f"+ {root}/merged/doors/**"),
-        _image("Depth from the wall plane, -15 to 15 cm", root, f"+ {root}/merged/depth"),
+        _image(wall, "Merged (4.2) and the doors found", merged, f"+ {root}/merged/doors/**"),
+        _image(wall, "Depth from the wall plane", f"+ {root}/merged/depth/**", below=ROW),
         rrb.Tabs(
-            _image("Openings (5)", root, f"+ {root}/openings/**", f"- {root}/openings/visibility"),
-            _image("What the beams met", root, f"+ {root}/openings/visibility"),
+            _image(wall, "Openings (5)", f"+ {root}/openings/**", f"- {beams}", below=ROW),
+            _image(wall, "What the beams met", f"+ {beams}", below=ROW),
             active_tab=0,
         ),
-        _image("Wall area (6.1): clusters of seeds", root, f"+ {root}/wall_area/clusters", f"+ {root}/wall_area/seeds"),
-        _image("Wall area (6.1): on the wall", root, merged, f"+ {root}/wall_area/mask"),
-        _image("Edges (6.2): colour, depth, both", root, f"+ {root}/edges/**"),
-        _image("Candidates (6.2): accepted, rejected by", root, merged, f"+ {root}/candidates/**"),
+        _image(wall, "Wall area (6.1): clusters of seeds", f"{area}/clusters", f"{area}/seeds/**", below=ROW),
+        _image(wall, "Wall area (6.1): on the wall", merged, f"{area}/mask/**", below=ROW),
+        _image(wall, "Edges (6.2)", f"+ {root}/edges/**", below=ROW),
+        _image(wall, "Candidates (6.2), accepted or rejected by", merged, f"+ {root}/candidates/**", beside=COLUMN),
         _photograph(wall),
     ]
     stages = rrb.Grid(*cells, grid_columns=2)
     return rrb.Horizontal(views, stages, column_shares=[1, 2], name=f"Wall {wall.name}", visible=wall.has_doors)
 
 
-def _view(root: str, number: int) -> rrb.Container:
+def _view(wall: WallTab, number: int) -> rrb.Container:
     """Section 4 for one scan."""
-    view = f"{root}/view/{number}"
+    view = f"{entities.stages(wall.name)}/view/{number}"
     return rrb.Vertical(
-        _image("Seen", root, f"+ {view}/colour"),
-        _image("Highlights (4.1)", root, f"+ {view}/colour", f"+ {view}/highlights/**"),
-        _image("Inpainted (4.2)", root, f"+ {view}/inpainted"),
+        _image(wall, "Seen", f"+ {view}/colour"),
+        _image(wall, "Highlights (4.1)", f"+ {view}/colour", f"+ {view}/highlights/**", below=ROW),
+        _image(wall, "Inpainted (4.2)", f"+ {view}/inpainted"),
         name=f"View {number + 1}",
     )
 
 
 def _photograph(wall: WallTab) -> rrb.View:
+    return rrb.Spatial2DView(origin=f"{entities.SHOTS}/{wall.name}", name="Photograph with the doors")
+
+
+def _image(wall: WallTab, name: str, *contents: str, below: float = 0.0, beside: float = 0.0) -> rrb.View:
+    """Images of a wall, with room for legends below and beside them [heights of the image]."""
+    height, width = wall.shape
+    bounds = rrb.VisualBounds2D(x_range=(0, width + beside * height), y_range=(0, (1 + below) * height))
     return rrb.Spatial2DView(
-        origin=f"{entities.SHOTS}/{wall.name}",
-        contents=["$origin/**", f"{entities.DOORS}/{wall.name}/**"],
-        name="Photograph with the doors",
+        origin=entities.stages(wall.name), contents=list(contents), name=name, visual_bounds=bounds
     )
-
-
-def _image(name: str, root: str, *contents: str) -> rrb.View:
-    return rrb.Spatial2DView(origin=root, contents=list(contents), name=name)
 
 
 def _results() -> rrb.Container:
     summary = rrb.TextDocumentView(origin=entities.SUMMARY, name="Summary")
     configuration = rrb.TextDocumentView(origin=entities.CONFIGURATION, name="Configuration")
+    detector, mission = "Detector: time per stage", "Mission: time per stage (wall clock)"
     figures = rrb.Grid(
-        rrb.Spatial2DView(origin=entities.ERRORS, name="Angle error", visual_bounds=_BARS),
-        rrb.Spatial2DView(origin=entities.STAGES, name="Detector: time per stage (wall clock)", visual_bounds=_BARS),
-        _percent(),
-        rrb.TimeSeriesView(
-            origin=entities.ANGLES,
-            name="Opening angles [deg]: joints and estimates",
-            axis_y=rrb.ScalarAxis(range=(-5, 110)),
-            plot_legend=rrb.PlotLegend("LeftTop"),
-        ),
+        rrb.Spatial2DView(origin=entities.ERRORS, name="Angle error", visual_bounds=rerun_figures.BARS),
+        rrb.Spatial2DView(origin=entities.COVERED, name="Coverage per scan", visual_bounds=rerun_figures.COVERAGE),
+        rrb.Spatial2DView(origin=entities.MISSION_STAGES, name=mission, visual_bounds=rerun_figures.BARS),
+        rrb.Spatial2DView(origin=entities.STAGES, name=detector, visual_bounds=rerun_figures.BARS),
+        rrb.Tabs(_angles(), _percent(), active_tab=0),
+        rrb.TimeSeriesView(origin=entities.MEMORY, name="Memory [MB], most so far", plot_legend=NO_LEGEND),
         grid_columns=2,
     )
-    return rrb.Horizontal(summary, figures, configuration, column_shares=[4, 5, 2], name="Results")
+    return rrb.Horizontal(summary, figures, configuration, column_shares=[7, 9, 3], name="Results")
 
 
 def _scatter() -> rrb.View:
     return rrb.Spatial2DView(
-        origin=entities.SCATTER,
-        name="Opening angle: estimate against joint",
-        visual_bounds=rrb.VisualBounds2D(x_range=(-40, 190), y_range=(-120, 28)),
+        origin=entities.SCATTER, name="Opening angle: estimate against joint", visual_bounds=rerun_figures.ANGLES
+    )
+
+
+def _angles() -> rrb.View:
+    return rrb.TimeSeriesView(
+        origin=entities.ANGLES,
+        name="Opening angles [deg]",
+        axis_y=rrb.ScalarAxis(range=(-5, 110)),
+        plot_legend=rrb.PlotLegend("LeftTop"),
     )
 
 
 def _percent() -> rrb.View:
-    return rrb.TimeSeriesView(origin=entities.COVERAGE, name="Seen so far [%]", axis_y=rrb.ScalarAxis(range=(0, 105)))
+    return rrb.TimeSeriesView(origin=entities.COVERAGE, name="Seen [%]", axis_y=rrb.ScalarAxis(range=(0, 105)))
 
 
 def _log() -> rrb.View:

@@ -22,6 +22,7 @@ WALLS = "/world/walls"
 MAP = "/world/map"
 GRID = "/world/map/grid"
 VOXELS = "/world/map/voxels"
+CEILING_VOXELS = "/world/map/ceiling_voxels"
 CLUTTER = "/world/map/clutter"
 DOORS = "/world/doors"
 TRUTH = "/world/truth/doors"
@@ -34,15 +35,18 @@ ANGLES = "/plots/angle"
 COVERAGE = "/plots/coverage"
 SCATTER = "/figures/angle_against_joint"
 ERRORS = "/figures/angle_error"
+COVERED = "/figures/coverage"
 STAGES = "/timing/detector_stages"
-STATES = "/states"
-ACTIVITY = "/states/activity"
-DOOR_STATES = "/states/door"
+MISSION_STAGES = "/timing/mission_stages"
+MEMORY = "/timing/memory"
+ACTIVITY = "/activity"
+DOOR_STATES = "/door"
 TABLE = "/table/doors"
 LOG = "/log"
 STAGES_OF_WALLS = "/walls"
 SUMMARY = "/report/summary"
 CONFIGURATION = "/report/configuration"
+KEY = "/report/key"
 
 NOTHING = 0
 VOXELS_FROM = 10
@@ -66,10 +70,16 @@ LEGEND = (
     (HIGHLIGHT, "highlight", (230, 40, 160, 255)),
     (COLOUR_EDGE, "colour edge", (255, 170, 60, 255)),
     (DEPTH_EDGE, "depth edge", (70, 190, 255, 255)),
-    (BOTH_EDGES, "colour and depth edge", (255, 255, 255, 255)),
+    (BOTH_EDGES, "both", (255, 255, 255, 255)),
     (WALL_AREA, "wall area", (90, 200, 110, 255)),
 )
 """Class id, label and colour of all that is drawn by class."""
+
+
+def legend(number: int) -> tuple[str, tuple[int, int, int]]:
+    """Label and colour of a class."""
+    label, (red, green, blue, _) = next((label, colour) for known, label, colour in LEGEND if known == number)
+    return label, (red, green, blue)
 
 
 def child(parent: str, *parts: object) -> str:

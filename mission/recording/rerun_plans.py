@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from functools import singledispatchmethod
+from typing import TYPE_CHECKING
 
 import numpy as np
 import rerun as rr
+from numpy.typing import NDArray
 
 from mission.events import Event, Labelled, Planned, RoomEntered, RoomsTied, Structured
 from mission.recording import entities
 from mission.recording.drawing import CELL_COLOURS, score_colours
-from mission.recording.rerun_world import LIFT, PLAN_COLOUR, hover, log_pose
+from mission.recording.rerun_places import log_pose
+from mission.recording.rerun_world import LIFT, PLAN_COLOUR, hover
 from mission.rigid import Pose
+
+if TYPE_CHECKING:
+    from mission.voxels import VoxelModel
 
 CLUTTER_COLOUR = (190, 110, 60)
 
@@ -47,26 +53,31 @@ class Plans:
 
     @draw.register
     def _(self, event: Labelled) -> None:
-        """Voxels as tiles on their surfaces, hidden until somebody asks for them."""
+        """Voxels as tiles on their surfaces; those of the ceiling apart, for they hide all others from above."""
         model = event.voxels
-        level = np.abs(model.normals[:, 2]) > 0.5
+        overhead = model.normals[:, 2] < -0.5
+        self._draw_tiles(entities.VOXELS, model, ~overhead)
+        self._draw_tiles(entities.CEILING_VOXELS, model, overhead)
+        half = np.full(3, 0.45 * model.size)
+        self._rec.log(entities.CLUTTER, rr.Boxes3D(centers=model.clutter, half_sizes=half, colors=CLUTTER_COLOUR))
+
+    def _draw_tiles(self, entity: str, model: VoxelModel, which: NDArray[np.bool_]) -> None:
+        normals, labels = model.normals[which], model.labels[which]
+        level = np.abs(normals[:, 2]) > 0.5
         row = model.floor.u
-        yaw = np.where(level, np.arctan2(row[1], row[0]), np.arctan2(model.normals[:, 1], model.normals[:, 0]))
+        yaw = np.where(level, np.arctan2(row[1], row[0]), np.arctan2(normals[:, 1], normals[:, 0]))
         side, thickness = 0.45 * model.size, 0.01
-        tiles = np.where(level[:, None], (side, side, thickness), (thickness, side, side))
         zeros = np.zeros_like(yaw)
         self._rec.log(
-            entities.VOXELS,
+            entity,
             rr.Boxes3D(
-                centers=model.cells_in_world,
-                half_sizes=tiles,
+                centers=model.cells_in_world[which],
+                half_sizes=np.where(level[:, None], (side, side, thickness), (thickness, side, side)),
                 quaternions=np.stack([zeros, zeros, np.sin(yaw / 2), np.cos(yaw / 2)], axis=1),
-                class_ids=entities.VOXELS_FROM + model.labels.astype(np.uint16),
+                class_ids=entities.VOXELS_FROM + labels.astype(np.uint16),
                 fill_mode="solid",
             ),
         )
-        half = np.full(3, 0.45 * model.size)
-        self._rec.log(entities.CLUTTER, rr.Boxes3D(centers=model.clutter, half_sizes=half, colors=CLUTTER_COLOUR))
 
     @draw.register
     def _(self, event: Planned) -> None:

@@ -106,7 +106,7 @@ class Plots:
             lane = child(entities.DOOR_STATES, evaluation.door_id)
             self._rec.log(lane, _lane(DOOR_COLOURS), static=True)
             self._rec.log(lane, rr.StateChange(state=evaluation.door.state))
-            self._rec.log(child(entities.TABLE, evaluation.door_id), _row(evaluation))
+            self._rec.log(child(entities.TABLE, evaluation.door_id), row(evaluation))
         self._plot_estimates()
 
     @_plot.register
@@ -158,7 +158,7 @@ def _lane(colours: dict[str, tuple[int, int, int]]) -> rr.StateConfiguration:
     return rr.StateConfiguration(values=list(colours), labels=list(colours), colors=list(colours.values()))
 
 
-def _row(evaluation: DoorEvaluation) -> rr.AnyValues:
+def row(evaluation: DoorEvaluation) -> rr.AnyValues:
     """A row of the table of doors; unknown numbers are left out: NaN would not be equal to that of a replay."""
     door, areas = evaluation.door, evaluation.overlap
     numbers = {

@@ -12,7 +12,7 @@ from mission.events import Event, RoomsTied, Structured
 from mission.recording import entities
 from mission.rigid import transformed
 
-SCALE = 60.0
+SCALE = 50.0
 """Of the graph's plane: a metre of the building is so many units, so that labels have room."""
 ROOM, LINK, END = (90, 140, 220), (90, 200, 110), (150, 150, 150)
 
@@ -38,6 +38,7 @@ class Rooms:
         rooms = {room: pose for room, pose in event.world_from_room.items() if room in self._middles}
         nodes = [(f"room {room}", self._place(self._middles[room], pose), ROOM) for room, pose in rooms.items()]
         edges: list[tuple[str, str]] = []
+        node_of: dict[str, str] = {}
         links = {face: link.doors for link in event.links if link.doors for face in link.doors}
         for face in event.faces:
             sides = links.get(face.door_id, (face.door_id,))
@@ -45,8 +46,9 @@ class Rooms:
             if face.door_id == sides[0]:
                 said = [_seen(other) for other in event.faces if other.door_id in sides]
                 place = self._place(face.head, event.world_from_room[face.room])
-                nodes.append((f"{name}: {', '.join(said)}", place, LINK if len(sides) > 1 else END))
-            edges.append((f"room {face.room}", next(node for node, _, _ in nodes if node.startswith(f"{name}: "))))
+                node_of[name] = "\n".join(said)
+                nodes.append((node_of[name], place, LINK if len(sides) > 1 else END))
+            edges.append((f"room {face.room}", node_of[name]))
         self._rec.log(
             entities.GRAPH,
             rr.GraphNodes(
@@ -65,5 +67,5 @@ class Rooms:
 
 
 def _seen(face: DoorFace) -> str:
-    door = face.door
-    return f"{door.state} {opening_text(door.opening_angle, door.opened_fraction, unit=' deg')}"
+    opening = opening_text(face.door.opening_angle, face.door.opened_fraction, unit=" deg")
+    return f"{face.door_id}: {'closed' if face.door.state == 'closed' else opening}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -16,17 +17,24 @@ from mission.events import DoorsDetected, DoorsEvaluated, Event, MissionStarted,
 from mission.recording import entities
 from mission.recording.blueprint import WallTab, blueprint, outlook
 from mission.recording.drawing import outline
+from mission.recording.live import Stream, flush
+from mission.recording.rerun_clouds import Clouds
+from mission.recording.rerun_costs import Costs
 from mission.recording.rerun_doors import Doors
+from mission.recording.rerun_photos import Photos
 from mission.recording.rerun_plans import Plans
 from mission.recording.rerun_plots import Plots
 from mission.recording.rerun_results import Results
 from mission.recording.rerun_rooms import Rooms
 from mission.recording.rerun_walls import Walls
 from mission.recording.rerun_world import World
+from mission.stopwatch import Stopwatch
+
+logger = logging.getLogger(__name__)
 
 APPLICATION = "door-mission"
 
-_Drawer = World | Plans | Doors | Walls | Rooms | Plots | Results
+_Drawer = World | Clouds | Plans | Doors | Photos | Walls | Rooms | Plots | Results | Costs
 
 
 class RerunSink:
@@ -36,9 +44,18 @@ class RerunSink:
     is simulated time, `scan` and `room` count. Wall clock times are not recorded, save those that the detector took.
     """
 
-    def __init__(self, path: Path) -> None:
-        """Record into a file, which is overwritten; it is opened by the first event."""
+    def __init__(self, path: Path, streams: Sequence[Stream] = (), *, stopwatch: Stopwatch | None = None) -> None:
+        """Record into a file, which is overwritten; it is opened by the first event.
+
+        Args:
+            path: Of the file.
+            streams: To viewers that follow; the file does not suffer when they go away.
+            stopwatch: Of a mission that runs now; None for one that is over, which takes nothing any more.
+        """
         self._path = path
+        self._streams = tuple(streams)
+        self._stopwatch = stopwatch
+        self._followed = True
         self._closing = ExitStack()
         self._drawers: list[_Drawer] = []
         self._scan_number = 0
@@ -71,7 +88,13 @@ class RerunSink:
         for drawer in self._drawers:
             drawer.draw(event)
         self._lay_out(event)
-        self._rec.flush()
+        self._flush()
+
+    def _flush(self) -> None:
+        followed = flush(self._rec, streams=self._streams)
+        if self._followed and not followed:
+            logger.warning("a viewer is gone; the recording goes on")
+        self._followed = followed
 
     def _open(self, first: Event) -> None:
         """Open the file; its id tells the viewer whether two recordings are one."""
@@ -79,13 +102,15 @@ class RerunSink:
         place = hashlib.sha256(str(self._path.resolve()).encode()).hexdigest()[:8]
         self._rec = rec = rr.RecordingStream(APPLICATION, recording_id="-".join([*mission, place]))
         rec.set_log_time_enabled(False)
-        rec.save(self._path)
+        rec.set_sinks(rr.FileSink(self._path), *self._streams)  # in this order: see flush
         self._closing.callback(rec.disconnect)  # writes the footer
-        self._closing.callback(rec.flush)
+        self._closing.callback(self._flush)
         legend = [rr.AnnotationInfo(number, label, colour) for number, label, colour in entities.LEGEND]
         for root in (entities.WORLD, entities.STAGES_OF_WALLS):
             rec.log(root, rr.AnnotationContext(legend), static=True)
-        self._drawers = [drawer(rec) for drawer in (World, Plans, Doors, Walls, Rooms, Plots, Results)]
+        self._drawers = [drawer(rec) for drawer in (World, Clouds, Plans, Doors, Photos, Walls, Rooms, Plots, Results)]
+        if self._stopwatch:
+            self._drawers.append(Costs(rec, self._stopwatch))
 
     def _lay_out(self, event: Event) -> None:
         """Fit the viewer's layout to what is known by now: an interrupted recording opens well, too.
@@ -125,6 +150,7 @@ def _wall_tabs(event: DoorsDetected) -> list[WallTab]:
             views=len(result.views),
             first_view=int(np.argmax([h.regions.sum() for h in result.highlights])) if result.views else None,
             has_doors=bool(result.doors),
+            shape=(result.merged.depth.shape[0], result.merged.depth.shape[1]),
         )
         for number, result in enumerate(event.results, start=1)
     ]

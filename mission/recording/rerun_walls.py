@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -16,9 +17,12 @@ from mission.angles import share_text
 from mission.events import DoorsDetected, Event
 from mission.recording import entities
 from mission.recording.drawing import jpeg
+from mission.recording.legends import draw_legend, draw_legend_column
 from mission.recording.rerun_world import hover
 
-ACCEPTED, REJECTED = (70, 210, 90), (235, 70, 70)
+ACCEPTED = (70, 210, 90)
+REJECTED = ((235, 70, 70), (240, 170, 50), (80, 160, 240), (200, 110, 220), (90, 210, 210), (230, 150, 170))
+"""Of rectangles, by the condition that rejected them: the most frequent one first."""
 LINE = (255, 120, 40)
 SHOWN_CANDIDATES = 12
 """At most so many rejected rectangles are drawn: of a cluttered wall there are thousands."""
@@ -27,8 +31,11 @@ SAME = 0.85
 CENTROID = (220, 60, 60)
 TRINARY = np.array([entities.NOTHING, entities.DATA, entities.CENTROID], np.uint8)
 VISIBILITY = np.array([entities.NOTHING, entities.DATA, entities.SEEN_THROUGH, entities.BLOCKED], np.uint8)
+SEED, NEUTRAL = (255, 255, 255), (190, 190, 190)
 DEPTH_RANGE = 0.15
 """Depths from the wall plane beyond this share the colours at the ends of the scale [m]."""
+DEPTHS = (("15 cm behind", (130, 130, 255)), ("on the wall", (164, 252, 60)), ("15 cm before", (220, 60, 30)))
+"""Legend of the depths: colours of the scale, the darkest lightened to be read."""
 
 
 class Walls:
@@ -64,6 +71,8 @@ def _draw_view(rec: rr.RecordingStream, entity: str, view: Orthoimage, highlight
     classes[highlights.candidates > 0] = entities.BRIGHT
     classes[highlights.regions] = entities.HIGHLIGHT
     rec.log(f"{entity}/highlights/regions", rr.SegmentationImage(classes, opacity=0.5))
+    kinds = (entities.REGION_OF_INTEREST, entities.BRIGHT, entities.HIGHLIGHT)
+    draw_legend(rec, f"{entity}/highlights", classes.shape, [*map(entities.legend, kinds), ("outline", LINE)])
     ends = [contour[:, ::-1] + 0.5 for contour in highlights.contours]  # (row, column) to (x, y)
     rec.log(
         f"{entity}/highlights/profiles",
@@ -84,6 +93,7 @@ def _draw_merged(rec: rr.RecordingStream, entity: str, result: WallResult) -> No
             depth_range=(-DEPTH_RANGE * 1000, DEPTH_RANGE * 1000),
         ),
     )
+    draw_legend(rec, f"{entity}/depth", result.merged.depth.shape, DEPTHS)
     doors = [door.rectangle for door in result.doors]
     labels = [f"{door.kind}, {door.state}, confidence {share_text(door.confidence)}" for door in result.doors]
     _draw_boxes(rec, f"{entity}/doors", result, doors, colours=[ACCEPTED] * len(doors), labels=labels)
@@ -95,6 +105,11 @@ def _draw_openings(rec: rr.RecordingStream, entity: str, result: WallResult) -> 
     rec.log(f"{entity}/trinary", rr.SegmentationImage(TRINARY[openings.trinary]))
     centroids = np.argwhere(openings.trinary == 2)[:, ::-1] + 0.5  # (row, column) to (x, y)
     rec.log(f"{entity}/centroids", rr.Points2D(centroids, colors=CENTROID, radii=rr.Radius.ui_points(2.0)))
+    seen = [entities.legend(kind) for kind in (entities.DATA, entities.CENTROID)]
+    named = [*seen, ("line", LINE), ("open door", ACCEPTED)]
+    draw_legend(rec, f"{entity}/rectangles", openings.trinary.shape, named)
+    kinds = (entities.DATA, entities.SEEN_THROUGH, entities.BLOCKED)
+    draw_legend(rec, f"{entity}/visibility", openings.visibility.shape, [entities.legend(kind) for kind in kinds])
     rec.log(f"{entity}/visibility", rr.SegmentationImage(VISIBILITY[openings.visibility]))
     rec.log(f"{entity}/lines", _lines(openings.trinary.shape, openings.horizontal_lines, openings.vertical_lines))
     colours = [ACCEPTED if door else LINE for door in openings.is_door]
@@ -110,8 +125,10 @@ def _draw_wall_area(rec: rr.RecordingStream, entity: str, result: WallResult) ->
     kept = area.seeds[area.seed_clusters > 0]
     rec.log(
         f"{entity}/seeds",
-        rr.Points2D(kept[:, ::-1] + 2.5, colors=(255, 255, 255), radii=rr.Radius.ui_points(0.8)),  # middle of 5 x 5
+        rr.Points2D(kept[:, ::-1] + 2.5, colors=SEED, radii=rr.Radius.ui_points(0.8)),  # middle of 5 x 5
     )
+    draw_legend(rec, f"{entity}/seeds", area.mask.shape, [("seed", SEED), ("a colour a cluster", NEUTRAL)])
+    draw_legend(rec, f"{entity}/mask", area.mask.shape, [entities.legend(entities.WALL_AREA)])
     mask = np.where(area.mask, entities.WALL_AREA, entities.NOTHING)
     rec.log(f"{entity}/mask", rr.SegmentationImage(mask.astype(np.uint8), opacity=0.6))
 
@@ -125,21 +142,38 @@ def _draw_search(rec: rr.RecordingStream, entity: str, result: WallResult) -> No
     classes[in_depth] = entities.DEPTH_EDGE
     classes[in_colour & in_depth] = entities.BOTH_EDGES
     rec.log(f"{entity}/edges/classes", rr.SegmentationImage(classes))
+    kinds = (entities.COLOUR_EDGE, entities.DEPTH_EDGE, entities.BOTH_EDGES)
+    draw_legend(rec, f"{entity}/edges", classes.shape, [*map(entities.legend, kinds), ("line", LINE)])
     rec.log(f"{entity}/edges/lines", _lines(classes.shape, search.horizontal_lines, search.vertical_lines))
-    shown = shown_candidates(search.candidates)
-    columns = ("dominant_colour_share", "dominant_depth_share", "wall_share")
-    shares: dict[str, Any] = {name: np.array([getattr(c, name) for c in shown], float) for name in columns}
-    shares["least_side_support"] = np.array([min(c.side_support) for c in shown], float)
-    for values in hover(**shares):
-        rec.log(f"{entity}/candidates/boxes", values)
+    _draw_candidates(rec, f"{entity}/candidates", result)
+
+
+def _draw_candidates(rec: rr.RecordingStream, entity: str, result: WallResult) -> None:
+    """Rectangles in the colour of the condition that rejected them, and beside the wall which colour is which."""
+    shown = shown_candidates(result.search.candidates)
+    verdicts = [candidate.rejected_by or "accepted" for candidate in shown]
+    counts = Counter(verdicts)
+    conditions = sorted(counts.keys() - {"accepted"}, key=lambda verdict: -counts[verdict])
+    colours = {"accepted": ACCEPTED} | {name: REJECTED[i % len(REJECTED)] for i, name in enumerate(conditions)}
     _draw_boxes(
         rec,
-        f"{entity}/candidates",
+        entity,
         result,
         [candidate.rectangle for candidate in shown],
-        colours=[REJECTED if candidate.rejected_by else ACCEPTED for candidate in shown],
-        labels=[candidate.rejected_by or "accepted" for candidate in shown],
+        colours=[colours[verdict] for verdict in verdicts],
+        hovered=_conditions(shown),
     )
+    told = [(f"{counts[verdict]} {verdict}", colour) for verdict, colour in colours.items() if counts[verdict]]
+    draw_legend_column(rec, entity, result.search.edges.shape, told)
+
+
+def _conditions(candidates: Sequence[Candidate]) -> list[rr.AnyValues]:
+    """What section 6.2's conditions look at, for hovering."""
+    columns = ("dominant_colour_share", "dominant_depth_share", "wall_share", "surroundings")
+    shares: dict[str, Any] = {name: np.array([getattr(c, name) for c in candidates], float) for name in columns}
+    shares["least_side_support"] = np.array([min(c.side_support) for c in candidates], float)
+    shares["rejected_by"] = [candidate.rejected_by or "" for candidate in candidates]
+    return hover(**shares)
 
 
 def shown_candidates(candidates: Sequence[Candidate]) -> list[Candidate]:
@@ -176,19 +210,21 @@ def _draw_boxes(
     rectangles: Sequence[Rectangle],
     *,
     colours: Sequence[tuple[int, int, int]],
-    labels: Sequence[str],
+    labels: Sequence[str] = (),
+    hovered: Sequence[rr.AnyValues] = (),
 ) -> None:
-    """Rectangles on the wall as boxes in its images, their labels one below the other."""
+    """Rectangles on the wall as boxes in its images, their labels, if any, one below the other."""
     pixel, height = result.merged.pixel_size, result.wall.height
     mins = [(r.left / pixel, (height - r.top) / pixel) for r in rectangles]
     sizes = [(r.width / pixel, r.height / pixel) for r in rectangles]
     thickness = rr.Radius.ui_points(1.5)
-    rec.log(f"{entity}/boxes", rr.Boxes2D(mins=mins, sizes=sizes, colors=colours, radii=thickness))
+    rec.log(f"{entity}/boxes", rr.Boxes2D(mins=mins, sizes=sizes, colors=colours, radii=thickness), *hovered)
     places = [
         (left + width / 2, top + tall * (len(mins) - 1 - number) / len(mins))
         for number, ((left, top), (width, tall)) in enumerate(zip(mins, sizes, strict=True))
     ]
-    rec.log(f"{entity}/labels", rr.Points2D(places, colors=colours, radii=0.0, labels=labels, show_labels=True))
+    if labels:
+        rec.log(f"{entity}/labels", rr.Points2D(places, colors=colours, radii=0.0, labels=labels, show_labels=True))
 
 
 def _lines(shape: tuple[int, ...], rows: NDArray[np.int32], columns: NDArray[np.int32]) -> rr.LineStrips2D:

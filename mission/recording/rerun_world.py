@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import singledispatchmethod
 from typing import Any
 
@@ -11,10 +10,10 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from mission.events import (
-    Coloured,
     DoorsDetected,
     Drove,
     Event,
+    MissionFinished,
     MissionStarted,
     Pose,
     Registered,
@@ -23,45 +22,31 @@ from mission.events import (
     Structured,
 )
 from mission.recording import entities
-from mission.recording.drawing import TRUTH_COLOUR, WALL_COLOUR, display_colours, on_grid, outline, thin
+from mission.recording.drawing import TRUTH_COLOUR, WALL_COLOUR, outline
 from mission.recording.entities import child
-from mission.recording.room_frames import RoomFrames
+from mission.recording.rerun_places import Places, log_pose
 from mission.rigid import inverted, transformed
 
 PATH_COLOUR = (255, 120, 40)
 PLAN_COLOUR = (80, 200, 255)
 LASER_COLOUR = (255, 60, 60)
+ROOM_COLOUR = (235, 235, 235)
 LIFT = 0.03
 """Lines on the floor are drawn this much above it, or the floor's points bury them [m]."""
 
 
-def log_pose(rec: rr.RecordingStream, entity: str, world_from_x: Pose) -> None:
-    """Log where something stands."""
-    rec.log(entity, rr.Transform3D(translation=world_from_x[:3, 3], mat3x3=world_from_x[:3, :3]))
-
-
-@dataclass
-class _Cloud:
-    """A scan thinned for display, waiting for the ceiling to be known."""
-
-    scan_number: int
-    points: NDArray[np.float32]
-    colours: NDArray[np.uint8]
-
-
 class World:
-    """Draws clouds, walls, the robot and its paths."""
+    """Draws walls, the robot and its paths."""
 
     def __init__(self, rec: rr.RecordingStream) -> None:
         """Draw into a recording."""
         self._rec = rec
-        self._ceilings: dict[int, float] = {}
-        self._waiting: _Cloud | None = None
         self._scanner_from_base: Pose = np.eye(4)
         self._floor = 0.0
         self._scan_number = 0
-        self._frames = RoomFrames()
-        self._in_room: dict[str, int] = {}
+        self._places = Places(rec)
+        self._middles: dict[int, NDArray[np.float64]] = {}
+        self._labelled: set[str] = set()
 
     @singledispatchmethod
     def draw(self, event: Event) -> None:
@@ -81,51 +66,52 @@ class World:
 
     @draw.register
     def _(self, event: RoomEntered) -> None:
-        self._frames.follow(event)
+        self._places.follow(event)
+        self._leave()
         log_pose(self._rec, entities.ROBOT, event.world_from_room @ event.world_from_base)
 
     @draw.register
     def _(self, event: RoomsTied) -> None:
-        """Move what was drawn in the rooms' frames to where the rooms lie by now."""
-        moved = self._frames.follow(event)
-        for entity, room in self._in_room.items():
-            if room in moved:
-                log_pose(self._rec, entity, moved[room])
+        self._places.follow(event)
+
+    @draw.register
+    def _(self, event: MissionFinished) -> None:
+        if len(self._middles) > 1:
+            self._leave()
+
+    def _leave(self) -> None:
+        """Take the labels off what is in rooms that the robot has left; their names remain."""
+        for entity in sorted(self._labelled):
+            self._rec.log(entity, rr.Points3D.from_fields(show_labels=False))
+        self._labelled.clear()
+        for room, middle in self._middles.items():
+            entity = child(entities.WALLS, room, "room")
+            label = rr.Points3D([middle], labels=f"room {room}", colors=ROOM_COLOUR, radii=0.0, show_labels=True)
+            self._rec.log(entity, label)
 
     @draw.register
     def _(self, event: Registered) -> None:
         self._scan_number = event.scan_number
-        world_from_scanner = self._frames[event.room] @ event.world_from_scanner
+        world_from_scanner = self._places[event.room] @ event.world_from_scanner
         log_pose(self._rec, entities.ROBOT, world_from_scanner @ self._scanner_from_base)
-        self._belongs(child(entities.CLOUDS, f"{event.scan_number:03d}"), event.room)
+        self._places.belongs(child(entities.CLOUDS, f"{event.scan_number:03d}"), event.room)
         place = child(entities.CLOUDS, f"{event.scan_number:03d}", "scanner")
+        self._labelled.add(place)
         log_pose(self._rec, place, event.world_from_scanner)
         self._rec.log(
             place,
             rr.TransformAxes3D(0.4),
-            rr.Points3D([(0, 0, 0)], radii=0.04, colors=PLAN_COLOUR, labels=f"scan {event.scan_number}"),
+            rr.Points3D(
+                [(0, 0, 0)], radii=0.04, colors=PLAN_COLOUR, labels=f"scan {event.scan_number}", show_labels=True
+            ),
             rr.AnyValues(fitness=event.fitness, rmse_m=event.rmse, accepted=event.accepted, reason=event.reason),
         )
 
     @draw.register
-    def _(self, event: Coloured) -> None:
-        view = event.view
-        chosen = thin(view.points_in_world)
-        points = on_grid(view.points_in_world[chosen])
-        colours = display_colours(view.colours[chosen], view.coloured[chosen])
-        self._waiting = _Cloud(event.scan_number, points, colours)
-        self._draw_cloud(event.room)
-
-    @draw.register
     def _(self, event: Structured) -> None:
-        structure = event.structure
-        self._floor = structure.floor_height
-        if structure.ceiling_height is not None:
-            self._ceilings.setdefault(event.room, structure.ceiling_height)
-        if self._waiting:  # the first scan of a room is drawn again, for now the ceiling is known
-            self._draw_cloud(event.room)
-            self._waiting = None
-        self._draw_walls(event.room, [outline(wall) for wall in structure.walls])
+        self._floor = event.structure.floor_height
+        self._middles[event.room] = np.array([*event.structure.polygon.mean(axis=0), self._floor + LIFT])
+        self._draw_walls(event.room, [outline(wall) for wall in event.structure.walls])
 
     @draw.register
     def _(self, event: DoorsDetected) -> None:
@@ -135,7 +121,7 @@ class World:
     def _(self, event: Drove) -> None:
         self._drive(event)
         leg = f"{event.step:04d}"
-        self._belongs(child(entities.DRIVEN, leg), event.room)
+        self._places.belongs(child(entities.DRIVEN, leg), event.room)
         self._path(child(entities.DRIVEN, leg), event.world_from_base[:, :2, 3], colour=PATH_COLOUR, radius=0.025)
         self._path(child(entities.TRUE_PATH, leg), event.true_world_from_base[:, :2, 3], colour=TRUTH_COLOUR)
         self._path(entities.PLANNED, self._in_world(event.room, event.planned_path), colour=PLAN_COLOUR, radius=0.012)
@@ -144,20 +130,12 @@ class World:
     def _in_world(self, room: int, way: NDArray[np.float64]) -> NDArray[np.float64]:
         """(P, 2) places of a room's frame, in the world."""
         level = np.column_stack([way, np.zeros(len(way))])
-        return np.asarray(transformed(level, self._frames[room])[:, :2], float)
-
-    def _belongs(self, entity: str, room: int) -> None:
-        """Draw an entity in the frame of a room."""
-        if entity not in self._in_room:
-            self._in_room[entity] = room
-            pose = self._frames[room]
-            if not np.array_equal(pose, np.eye(4)):
-                log_pose(self._rec, entity, pose)
+        return np.asarray(transformed(level, self._places[room])[:, :2], float)
 
     def _drive(self, event: Drove) -> None:
         """The robot's poses, each at its own mission time."""
         count = len(event.times)
-        poses = self._frames[event.room] @ event.world_from_base
+        poses = self._places[event.room] @ event.world_from_base
         self._rec.send_columns(
             entities.ROBOT,
             [
@@ -172,27 +150,13 @@ class World:
             ),
         )
 
-    def _draw_cloud(self, room: int) -> None:
-        assert self._waiting is not None
-        cloud, ceiling = self._waiting, self._ceilings.get(room)
-        number = f"{cloud.scan_number:03d}"
-        below = np.ones(len(cloud.points), bool) if ceiling is None else cloud.points[:, 2] < ceiling - 0.1
-        entity = child(entities.CLOUDS, number, "points")
-        self._log_points(entity, cloud.points[below], cloud.colours[below])
-        if ceiling is not None:
-            self._belongs(child(entities.CEILINGS, number), room)
-            self._log_points(child(entities.CEILINGS, number), cloud.points[~below], cloud.colours[~below])
-            self._waiting = None
-
-    def _log_points(self, entity: str, points: NDArray[np.float32], colours: NDArray[np.uint8]) -> None:
-        self._rec.log(entity, rr.Points3D(points, colors=colours, radii=rr.Radius.ui_points(1.5)))
-
     def _draw_walls(self, room: int, outlines: list[NDArray[np.float64]]) -> None:
         names = [f"wall {entities.wall_name(room, number)}" for number in range(1, len(outlines) + 1)]
         entity = child(entities.WALLS, room)
-        self._belongs(entity, room)
+        self._places.belongs(entity, room)
         self._rec.log(f"{entity}/outlines", rr.LineStrips3D(outlines, colors=WALL_COLOUR, radii=0.01))
         tops = [0.85 * line[3] + 0.15 * line[2] for line in outlines]  # left in the upper edge: doors are labelled, too
+        self._labelled.add(f"{entity}/names")
         self._rec.log(
             f"{entity}/names", rr.Points3D(tops, labels=names, colors=WALL_COLOUR, radii=0.0, show_labels=True)
         )
@@ -204,7 +168,7 @@ class World:
         points = []
         for scan in (scan for scan in event.laser_scans if scan.time == event.laser_scans[-1].time):
             pose = event.world_from_base[min(int(np.searchsorted(event.times, scan.time)), len(event.times) - 1)]
-            points.append(transformed(scan.points_in_base(), self._frames[event.room] @ pose))
+            points.append(transformed(scan.points_in_base(), self._places[event.room] @ pose))
         self._rec.log(
             entities.LASERS, rr.Points3D(np.concatenate(points), colors=LASER_COLOUR, radii=rr.Radius.ui_points(1.5))
         )

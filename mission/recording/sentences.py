@@ -57,7 +57,8 @@ def sentence(event: Event) -> str:
             metres = np.linalg.norm(steps, axis=1).sum()
             return f"drove {metres:.2f} m" + ("" if event.arrived else f", {event.outcome}: {event.reason}")
         case DoorsDetected():
-            return f"{sum(len(result.doors) for result in event.results)} doors in {len(event.results)} walls"
+            count = sum(len(result.doors) for result in event.results)
+            return f"{count} door{'s' * (count != 1)} in {len(event.results)} walls"
         case DoorsEvaluated():
             return _evaluated(event)
         case Remarked():

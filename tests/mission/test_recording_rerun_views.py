@@ -8,15 +8,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from rerun.chunk import RrdReader
 
 from detector.result import Candidate, Rectangle
 from mission import events
-from mission.events import DoorsEvaluated, Drove, Labelled, Planned
+from mission.events import DoorsEvaluated, Drove, Labelled, MissionStarted, Planned, RoomEntered
 from mission.recording.blueprint import outlook
-from mission.recording.rerun_doors import Shot
-from mission.recording.rerun_results import LABEL, label_places
+from mission.recording.rerun_doors import label_of
+from mission.recording.rerun_figures import column_heights
+from mission.recording.rerun_sink import RerunSink
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
+from mission.recording.shots import Shot
+from mission.stopwatch import Stopwatch
 from tests.mission import recording_room as made
 from tests.mission.recording_room import ESTIMATE, JOINT
 from tests.mission.recording_story import story
@@ -41,6 +45,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "/world/candidates/chosen",
         "/world/map/voxels",
         "/world/map/grid",
+        "/world/map/ceiling_voxels",
         "/world/walls/1/outlines",
         "/world/doors/1.2/1.2-a/leaf",
         "/world/truth/doors/hall\\/door\\ 1",
@@ -57,9 +62,11 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "/plots/angle/estimate/1.2-a",
         "/plots/coverage/1/walls",
         "/plots/coverage/1/structure",
-        "/states/activity",
+        "/activity",
+        "/door/1.2-a",
         "/report/summary",
         "/report/configuration",
+        "/report/key",
     ],
 )
 def test_the_tree_has(recording: Path, entity: str) -> None:
@@ -105,23 +112,22 @@ def test_walls_and_structure_are_two_lines_of_what_was_seen(recording: Path) -> 
     assert colours[0] != colours[1]
 
 
-def test_labels_of_doors_that_are_all_closed_do_not_hide_each_other() -> None:
-    points = [
-        (0.0, 0.0),
-        (35.0, -34.0),
-        (0.0, 0.1),
-        (0.0, 0.0),
-        (90.0, -91.0),
-        (0.0, -12.0),
-        (95.0, -20.0),
-        (60.0, -21.0),
-    ]
-    places = np.array(label_places(points))
-    width, height = LABEL
-    for number, place in enumerate(places):
-        gap = np.abs(np.delete(places, number, axis=0) - place)
-        assert ((gap[:, 0] >= width) | (gap[:, 1] > height - 1e-9)).all()
-    assert places[4] == pytest.approx([90 + 0.53 * width, -91 - height])  # none near: beside its point
+def test_what_is_written_beside_a_figure_is_in_lines_of_their_own() -> None:
+    few, many = (np.diff(column_heights(count, top=-118.0)) for count in (4, 26))
+    assert few == pytest.approx([12.0] * 3)
+    assert many == pytest.approx([5.0] * 25)  # 130 / 26
+
+
+def test_angles_are_written_with_their_deviation_beside_the_joint(recording: Path) -> None:
+    labels = column(recording, "/figures/angle_against_joint/labels", "Points2D:labels")[-1]
+    assert labels[0] == "1.2-a: 30.0 ± 0.4 deg (joint 31.0)"
+
+
+def test_coverage_is_drawn_scan_by_scan(recording: Path) -> None:
+    shares = [event.voxels.coverage for event in story() if isinstance(event, Labelled)]
+    (strip,) = column(recording, "/figures/coverage/lines", "LineStrips2D:strips")[-1]
+    expected = [(100 * scan / len(shares), -100 * share) for scan, share in enumerate(shares, start=1)]
+    np.testing.assert_allclose(strip, expected, rtol=1e-6)
 
 
 def test_a_door_is_drawn_where_it_was_found_and_labelled_with_its_joint(recording: Path) -> None:
@@ -159,19 +165,43 @@ def test_the_summary_quotes_every_door_and_every_miss(recording: Path) -> None:
     assert "**completed**: one room; 2.0 m driven in 2 min 52 s" in text
 
 
-@pytest.mark.parametrize(
-    ("left", "area"),
-    [
-        (-0.5, 1600),  # f w / z = 80 * 1 / 2 = 40 px wide and 40 px tall, whole in a picture 120 px wide
-        (1.0, 400),  # half of it is cut off: 800 px2 are shown, and count for half again
-        (9.0, 0),
-    ],
-)
-def test_a_photograph_counts_for_what_it_shows_of_a_door(left: float, area: float) -> None:
-    shot = Shot(b"", np.array([[80, 0, 60], [0, 80, 40], [0, 0, 1.0]]), 120, 80, 1, np.eye(4), np.eye(4))
-    door = np.array([[left, -0.5, 2], [left + 1, -0.5, 2], [left + 1, 0.5, 2], [left, 0.5, 2]])
-    assert shot.shown_area(door[None]) == pytest.approx(area)
-    assert shot.shown_area(-door[None]) == 0  # behind the camera
+SHOT = Shot(b"", np.array([[80, 0, 60], [0, 80, 40], [0, 0, 1.0]]), 120, 80, 1, np.eye(4), np.eye(4))
+
+
+def upright(left: float, depth: float = 2.0) -> NDArray[np.float64]:
+    """A square of 1 m that faces the camera."""
+    return np.array([[left, -0.5, depth], [left + 1, -0.5, depth], [left + 1, 0.5, depth], [left, 0.5, depth]])
+
+
+def test_the_best_photograph_shows_a_door_whole_and_large() -> None:
+    whole = SHOT.shows([upright(-0.5)])  # f w / z = 80 * 1 / 2 = 40 px wide and tall
+    assert whole > SHOT.shows([upright(-0.5, depth=4.0)]) > 0  # 20 px
+    assert whole > 4 * SHOT.shows([upright(1.0)]) > 0  # half of it is cut off
+    assert SHOT.shows([upright(9.0)]) == 0
+    assert SHOT.shows([-upright(-0.5)]) == 0  # behind the camera
+
+
+def test_a_door_is_outlined_as_far_as_the_picture_has_it() -> None:
+    assert len(SHOT.outline(upright(-0.5))) == 4
+    cut = np.array(SHOT.outline(upright(1.0)))  # its left side is in column 60 + 80 * 1 / 2 = 100; the right one is out
+    assert len(cut) == 3
+    assert (cut[..., 0].min(), cut[..., 0].max()) == pytest.approx((100, 120))
+    beside = np.array([[1, -0.5, 2], [1, -0.5, -2], [1, 0.5, -2], [1, 0.5, 2.0]])  # goes on behind the camera
+    assert np.array(SHOT.outline(beside))[..., 0].max() == pytest.approx(120)
+    assert SHOT.outline(-upright(-0.5)) == []
+
+
+def test_a_door_behind_another_wall_is_not_in_the_photograph() -> None:
+    """The camera looks along y from (3, 1, 1); a wall of 2 m stands across, 1 m ahead, and the door 4 m ahead."""
+    looking = made.pose(3, 1, 1) @ np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]])
+    shot = replace(SHOT, room_from_camera=looking)
+    door = np.array([[2.5, 5, 0], [3.5, 5, 0], [3.5, 5, 2], [2.5, 5, 2.0]])
+    far, screen = made.walls()[2], made.walls()[2]
+    far = replace(far, origin=np.array([0, 5.0, 0]))
+    screen = replace(screen, origin=np.array([2.0, 2.0, 0]), width=2.0)
+    assert shot.sees(door, [far])
+    assert not shot.sees(door, [far, screen])
+    assert shot.sees(door, [far, replace(screen, origin=np.array([4.0, 2.0, 0]))])  # beside the line of sight
 
 
 def judged(left: float, support: float, rejected_by: str | None) -> Candidate:
@@ -216,3 +246,61 @@ def test_what_is_measured_in_a_room_is_drawn_where_the_room_lies(tmp_path: Path)
     registered = next(event for event in told if isinstance(event, events.Registered) and event.room == 2)
     shot = made.pose(0.1, 0) @ registered.world_from_scanner @ made.photo().scanner_from_camera
     np.testing.assert_allclose(column(path, "/world/camera", "Transform3D:translation")[-1][0], shot[:3, 3], atol=1e-6)
+
+
+def test_a_later_scan_adds_what_earlier_ones_did_not_show(tmp_path: Path) -> None:
+    """The second scan sees the first one's points again, and ten new ones outside, 1 m apart."""
+    told = [event for event in story() if isinstance(event, events.MissionStarted | events.RoomEntered)]
+    first = next(event for event in story() if isinstance(event, events.Coloured))
+    view = first.view
+    points_in_world = np.concatenate(
+        [view.points_in_world, np.array([[20.0 + x, 0, 0] for x in range(10)], np.float32)]
+    )
+    count = len(points_in_world)
+    more = replace(
+        view,
+        points_in_world=points_in_world,
+        colours=np.full((count, 3), 9, np.uint8),
+        coloured=np.append(view.coloured, np.ones(10, bool)),
+    )
+    second = replace(first, scan_number=first.scan_number + 1, view=more)
+    path = record(tmp_path / "two.rrd", [*told, first, second])
+    (added,) = points(path, f"/world/scans/{second.scan_number:03d}/points")
+    assert added[:, 0] == pytest.approx(np.arange(20.0, 30.0))
+
+
+def test_points_tell_their_reflectance(tmp_path: Path) -> None:
+    scanned = event_of(events.Scanned)
+    count = int(np.isfinite(scanned.scan.ranges).sum())
+    seen = replace(event_of(events.Coloured), view=made.view(np.random.default_rng(0), count))
+    path = record(tmp_path / "told.rrd", [event_of(MissionStarted), event_of(RoomEntered), scanned, seen])
+    (shown,) = column(path, f"/world/scans/{seen.scan_number:03d}/points", "reflectance_db")
+    assert set(shown) == {-5}  # ranges of 3.0 less 8
+    assert len(shown) == len(points(path, f"/world/scans/{seen.scan_number:03d}/points")[0])
+
+
+def test_two_faces_of_a_door_share_a_label() -> None:
+    here, there = event_of(DoorsEvaluated).doors[0], event_of(DoorsEvaluated).doors[0]
+    assert label_of(here, replace(there, door_id="2.4-a")) == "1.2-a = 2.4-a: 30.0, 30.0 deg (joint 31.0)"
+
+
+def test_of_rooms_that_the_robot_has_left_the_names_remain(tmp_path: Path) -> None:
+    told = story()[:-1]
+    entered = event_of(RoomEntered)
+    told.append(replace(entered, step=len(told), time=told[-1].time, room=2, how="door", door="1.2-a"))
+    path = record(tmp_path / "left.rrd", told)
+    assert column(path, "/world/walls/1/names", "Points3D:show_labels")[-1] == [False]
+    assert column(path, "/world/walls/1/room", "Points3D:labels")[-1] == ["room 1"]
+
+
+def test_time_and_memory_of_a_mission_that_runs_are_drawn_below_timing(tmp_path: Path) -> None:
+    stopwatch = Stopwatch()
+    with stopwatch("scan"):
+        pass
+    with RerunSink(tmp_path / "run.rrd", stopwatch=stopwatch) as sink:
+        for event in story():
+            sink.handle(event)
+    assert column(tmp_path / "run.rrd", "/timing/mission_stages/labels", "Points2D:labels")[-1] == ["scan: 0.0 s"]
+    megabytes = [value for row in column(tmp_path / "run.rrd", "/timing/memory", "Scalars:scalars") for value in row]
+    assert len(megabytes) >= 2
+    assert 50 < megabytes[0] <= megabytes[-1] < 20_000

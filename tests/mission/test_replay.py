@@ -200,7 +200,8 @@ class TestMission:
     """A real one, on the draft pattern."""
 
     @pytest.fixture(scope="class")
-    def mission(self, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    @classmethod
+    def mission(cls, tmp_path_factory: pytest.TempPathFactory) -> Path:
         folder = tmp_path_factory.mktemp("mission") / "out"
         options = ["--set", "scanner.pattern=draft", "--max-scans", "2", "--quiet"]
         assert main(["run", "room.xml", *options, "--out", str(folder)]) == 0

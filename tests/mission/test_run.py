@@ -17,6 +17,7 @@ from mission import run
 from mission.errors import MissionError
 from mission.events import Event, MissionFinished, Remarked
 from mission.progress import TerminalProgress
+from mission.recording.cost import recording_cost
 from mission.report import Report, RoomReport
 from mission.stopwatch import Stopwatch
 
@@ -61,6 +62,15 @@ def test_however_a_mission_ends_its_files_say_so(
     assert (got, summary["outcome"]) == (status, outcome)
     assert (tmp_path / "mission.rrd").stat().st_size > 0
     assert (tmp_path / "mission.mcap").read_bytes().endswith(b"\x89MCAP0\r\n")  # magic at the end: it was closed
+
+
+def test_the_summary_tells_what_recording_cost(tmp_path: Path) -> None:
+    _, summary = carried_out(Told(), tmp_path)
+    assert summary["recording"].keys() == {"mcap_bytes_per_scan", "rrd_bytes_per_scan", "logging_share"}
+    (tmp_path / "mission.rrd").write_bytes(bytes(900))
+    (tmp_path / "mission.mcap").unlink()
+    cost = recording_cost(tmp_path, scans=3, seconds=2.0, wall_clock=50.0)
+    assert cost == {"mcap_bytes_per_scan": 0, "rrd_bytes_per_scan": 300, "logging_share": 0.04}
 
 
 def test_a_full_disk_ends_the_mission_but_not_the_other_files(
