@@ -68,6 +68,7 @@ class Redetection:
             event=self._surveyor.event,
             true_doors=self.true_doors,
         )
+        self._mopad.time = started.time
         self._doors = started.true_doors
         self._rooms: dict[int, ExploredRoom] = {}
         self._newest = 0

@@ -195,45 +195,47 @@ def test_a_size_that_a_file_claims_takes_no_memory(recording: Path) -> None:
         list(read_events(spoilt))
 
 
+@pytest.fixture(scope="module")
+def mission(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The output folder of a draft mission in room.xml."""
+    folder = tmp_path_factory.mktemp("mission") / "out"
+    options = ["--set", "scanner.pattern=draft", "--max-scans", "2", "--quiet"]
+    assert main(["run", "room.xml", *options, "--out", str(folder)]) == 0
+    return folder
+
+
 @pytest.mark.slow
-class TestMission:
-    """A real one, on the draft pattern."""
+def test_judged_again_without_the_simulator_the_doors_are_the_same_to_the_last_byte(
+    mission: Path, tmp_path: Path
+) -> None:
+    command = [sys.executable, "-c", WITHOUT_SIMULATOR, "replay", str(mission / "mission.mcap"), "--quiet"]
+    done = subprocess.run([*command, "--redetect", "--out", str(tmp_path)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "doors.json").read_bytes() == (mission / "doors.json").read_bytes()
+    old, new = ([*read_events(folder / "mission.mcap")] for folder in (mission, tmp_path))
+    found = [where for one, other in zip(old, new, strict=True) for where in differences(one, other)]
+    assert [where for where in found if "stage_seconds" not in where] == []
 
-    @pytest.fixture(scope="class")
-    @classmethod
-    def mission(cls, tmp_path_factory: pytest.TempPathFactory) -> Path:
-        folder = tmp_path_factory.mktemp("mission") / "out"
-        options = ["--set", "scanner.pattern=draft", "--max-scans", "2", "--quiet"]
-        assert main(["run", "room.xml", *options, "--out", str(folder)]) == 0
-        return folder
 
-    def test_judged_again_without_the_simulator_the_doors_are_the_same_to_the_last_byte(
-        self, mission: Path, tmp_path: Path
-    ) -> None:
-        command = [sys.executable, "-c", WITHOUT_SIMULATOR, "replay", str(mission / "mission.mcap"), "--quiet"]
-        done = subprocess.run([*command, "--redetect", "--out", str(tmp_path)], capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        assert (tmp_path / "doors.json").read_bytes() == (mission / "doors.json").read_bytes()
-        old, new = ([*read_events(folder / "mission.mcap")] for folder in (mission, tmp_path))
-        found = [where for one, other in zip(old, new, strict=True) for where in differences(one, other)]
-        assert [where for where in found if "stage_seconds" not in where] == []
+@pytest.mark.slow
+def test_a_replay_looks_the_same(mission: Path, tmp_path: Path) -> None:
+    assert main(["replay", str(mission / "mission.mcap"), "--quiet", "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "doors.json").read_bytes() == (mission / "doors.json").read_bytes()
+    for name, folder in (("one", mission), ("other", tmp_path)):
+        apart = ["--drop-timeline", "log_time", "--drop-entity", "/__properties"]
+        filtered, optimized = tmp_path / f"{name}.filtered.rrd", tmp_path / f"{name}.rrd"
+        rerun("filter", folder / "mission.rrd", *apart, "-o", filtered)
+        rerun("optimize", filtered, "-o", optimized)
+    rerun("compare", "--unordered", tmp_path / "one.rrd", tmp_path / "other.rrd")
 
-    def test_a_replay_looks_the_same(self, mission: Path, tmp_path: Path) -> None:
-        assert main(["replay", str(mission / "mission.mcap"), "--quiet", "--out", str(tmp_path)]) == 0
-        assert (tmp_path / "doors.json").read_bytes() == (mission / "doors.json").read_bytes()
-        for name, folder in (("one", mission), ("other", tmp_path)):
-            apart = ["--drop-timeline", "log_time", "--drop-entity", "/__properties"]
-            filtered, optimized = tmp_path / f"{name}.filtered.rrd", tmp_path / f"{name}.rrd"
-            rerun("filter", folder / "mission.rrd", *apart, "-o", filtered)
-            rerun("optimize", filtered, "-o", optimized)
-        rerun("compare", "--unordered", tmp_path / "one.rrd", tmp_path / "other.rrd")
 
-    def test_another_parameter_leads_to_other_doors(
-        self, mission: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-    ) -> None:
-        options = ["--redetect", "--set", "detector.min_height=2.1", "--quiet", "--out", str(tmp_path)]
-        assert main(["replay", str(mission / "mission.mcap"), *options]) == 0
-        assert "not found" in capsys.readouterr().out
+@pytest.mark.slow
+def test_another_parameter_leads_to_other_doors(
+    mission: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--redetect", "--set", "detector.min_height=2.1", "--quiet", "--out", str(tmp_path)]
+    assert main(["replay", str(mission / "mission.mcap"), *options]) == 0
+    assert "not found" in capsys.readouterr().out
 
 
 def rerun(*arguments: Any) -> None:
