@@ -16,6 +16,7 @@ from mcap.writer import Writer
 
 from mission.__main__ import main
 from mission.events import DoorsEvaluated, Event, MissionFinished, MissionStarted
+from mission.recording import entities
 from mission.recording.mcap_reader import DamagedError, read_events
 from mission.recording.mcap_sink import McapSink
 from mission.recording.mcap_topics import PROFILE
@@ -223,6 +224,8 @@ def test_a_replay_looks_the_same(mission: Path, tmp_path: Path) -> None:
     assert (tmp_path / "doors.json").read_bytes() == (mission / "doors.json").read_bytes()
     for name, folder in (("one", mission), ("other", tmp_path)):
         apart = ["--drop-timeline", "log_time", "--drop-entity", "/__properties"]
+        for timed in (entities.MEMORY, f"{entities.MISSION_STAGES}/bars", f"{entities.MISSION_STAGES}/labels"):
+            apart += ["--drop-entity", timed]
         filtered, optimized = tmp_path / f"{name}.filtered.rrd", tmp_path / f"{name}.rrd"
         rerun("filter", folder / "mission.rrd", *apart, "-o", filtered)
         rerun("optimize", filtered, "-o", optimized)
