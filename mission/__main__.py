@@ -135,7 +135,15 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    run.add_argument("scene", metavar="SCENE", help="MJCF file; a bare name is also looked up in assets/rooms/")
+    run.add_argument(
+        "scene", metavar="SCENE", nargs="?", help="MJCF file; a bare name is also looked up in assets/rooms/"
+    )
+    run.add_argument(
+        "--resume",
+        metavar="DIR",
+        help="go on with the mission that was interrupted in this folder, as it was asked for; its recordings so far "
+        "are kept as mission.interrupted-<n>.mcap and .rrd",
+    )
     run.add_argument(
         "--out", metavar="DIR", help="folder for the results, replaced if they exist (default: runs/<scene>-<n>)"
     )
