@@ -98,6 +98,10 @@ def _bench(options: argparse.Namespace) -> int:
         from mission.bench.speed.command import bench_speed
 
         return bench_speed(options)
+    if options.bench == "recording":
+        from mission.bench.recording.command import bench_recording
+
+        return bench_recording(options)
     if options.bench == "building":
         from mission.bench.building.command import bench_building
 
@@ -135,7 +139,15 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    run.add_argument("scene", metavar="SCENE", help="MJCF file; a bare name is also looked up in assets/rooms/")
+    run.add_argument(
+        "scene", metavar="SCENE", nargs="?", help="MJCF file; a bare name is also looked up in assets/rooms/"
+    )
+    run.add_argument(
+        "--resume",
+        metavar="DIR",
+        help="go on with the mission that was interrupted in this folder, as it was asked for; its recordings so far "
+        "are kept as mission.interrupted-<n>.mcap and .rrd",
+    )
     run.add_argument(
         "--out", metavar="DIR", help="folder for the results, replaced if they exist (default: runs/<scene>-<n>)"
     )
@@ -190,6 +202,7 @@ def parser() -> argparse.ArgumentParser:
     _add_building(benches)
     _add_planners(benches)
     _add_speed(benches)
+    _add_recording(benches)
     return commands
 
 
@@ -269,6 +282,19 @@ def _add_planners(benches: argparse._SubParsersAction[OneLineParser]) -> None:
     planners.add_argument("--out", metavar="DIR", help="folder for the results (default: runs/bench-planners-<n>)")
     _add_workers(planners)
     _add_configuration(planners)
+
+
+def _add_recording(benches: argparse._SubParsersAction[OneLineParser]) -> None:
+    recording = benches.add_parser(
+        "recording",
+        help="what recording costs: bytes a scan, wall clock, memory; and how fast it is read back",
+        description="Run a mission, and print what its recordings cost beside what they may.",
+        allow_abbrev=False,
+    )
+    recording.add_argument("--scene", default="room.xml", metavar="SCENE", help="as for run (default: room.xml)")
+    recording.add_argument("--seed", type=_seed, default=0, metavar="N", help="of all noise (default: 0)")
+    recording.add_argument("--out", metavar="DIR", help="folder for the results (default: runs/bench-recording-<n>)")
+    _add_configuration(recording)
 
 
 def _add_speed(benches: argparse._SubParsersAction[OneLineParser]) -> None:

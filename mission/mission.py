@@ -21,6 +21,7 @@ from mission.explored_room import ExploredRoom
 from mission.grid import Footprint
 from mission.mopad import Mopad
 from mission.registration import Registrar
+from mission.resumption import Earlier
 from mission.rigid import Pose
 from mission.stopwatch import Stopwatch
 from mission.surveyor import Surveyor
@@ -35,7 +36,15 @@ class Mission:
     The simulator's truth (poses, joints) goes into events only: no stage reads it.
     """
 
-    def __init__(self, scene: Scene, config: MissionConfig, *, seed: int, stopwatch: Stopwatch | None = None) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        config: MissionConfig,
+        *,
+        seed: int,
+        stopwatch: Stopwatch | None = None,
+        earlier: Earlier | None = None,
+    ) -> None:
         """Set the robot up in the scene.
 
         Args:
@@ -43,10 +52,11 @@ class Mission:
             config: Parameters of all stages.
             seed: Of all noise.
             stopwatch: Counts the time of each stage.
+            earlier: What the same mission measured before it was interrupted.
         """
         self._scene, self._config, self._seed = scene, config, seed
         self._stopwatch = stopwatch or Stopwatch()
-        self._mopad = Mopad(scene, config, seed=seed)
+        self._mopad = Mopad(scene, config, seed=seed, earlier=earlier)
         self._footprint = Footprint(*self._mopad.robot.footprint)
         self._surveyor = Surveyor(scene, self._mopad, config, self._stopwatch, seed=seed)
         self._building = ExploredBuilding(config.links)

@@ -9,6 +9,7 @@ from typing import Self
 import numpy as np
 
 from mission.config import MissionConfig
+from mission.resumption import Earlier
 from mission.rigid import Pose, inverted
 from sim.camera import Camera, Photo
 from sim.hokuyo import Hokuyo, LaserScan
@@ -29,14 +30,16 @@ MAX_SET_DOWN_ERROR, MAX_SET_DOWN_TURN = 0.05, np.radians(2.0)
 class Mopad:
     """The robot in its scene. Sensors measure from the true pose; what is estimated never reads it."""
 
-    def __init__(self, scene: Scene, config: MissionConfig, *, seed: int) -> None:
+    def __init__(self, scene: Scene, config: MissionConfig, *, seed: int, earlier: Earlier | None = None) -> None:
         """Switch the robot on at its start.
 
         Args:
             scene: With the robot in it.
             config: Parameters of robot and sensors.
             seed: Of all noise; each sensor draws from a stream of its own, scanner and camera anew every time.
+            earlier: What need not be measured, for it was, when the same mission was interrupted.
         """
+        self._earlier = earlier or Earlier()
         self._scan_seeds, self._photo_seeds, *others = np.random.SeedSequence(seed).spawn(5)
         hokuyo, robot, operator = (np.random.default_rng(s) for s in others)
         self._scene = scene
@@ -98,14 +101,18 @@ class Mopad:
         """One panorama; takes the time that the VZ-400 needs."""
         self.meet_obstacles(driving=False)
         rng = np.random.default_rng(*self._scan_seeds.spawn(1))
-        scan = self._scanner.scan(self._scene.data, self.true_world_from_scanner, rng)
+        scan = self._earlier.scan(self.true_world_from_scanner)
+        if scan is None:
+            scan = self._scanner.scan(self._scene.data, self.true_world_from_scanner, rng)
         self.robot.wait(scan.duration)
         return scan
 
     def photograph(self) -> tuple[Photo, ...]:
         """One turn of the camera."""
         rng = np.random.default_rng(*self._photo_seeds.spawn(1))
-        photos = self._camera.photograph(self._scene.data, self.true_world_from_scanner, rng)
+        photos = self._earlier.photos()
+        if photos is None:
+            photos = self._camera.photograph(self._scene.data, self.true_world_from_scanner, rng)
         self.robot.wait(SECONDS_PER_PHOTO * len(photos))
         return photos
 

@@ -25,14 +25,16 @@ from mission.folders import BAD_INPUT, BELOW, DONE, FAILED, INTERRUPTED, LOG_WID
 from mission.interrupts import Interrupts
 from mission.memory import release_freed_memory
 from mission.mission import Mission
+from mission.order import Order, read_order, write_order
 from mission.progress import TerminalProgress
 from mission.recording.cost import recording_cost
 from mission.report import Report, write_json
+from mission.resumption import Earlier, check_scene, is_complete, set_aside
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
 from sim.errors import SimError
 from sim.obstacles import Obstacle
-from sim.scene import load_scene
+from sim.scene import Scene, load_scene
 
 if TYPE_CHECKING:  # rerun takes a while to import
     from mission.recording.live import Stream
@@ -55,19 +57,23 @@ def run(options: argparse.Namespace) -> int:
     try:
         bars = dict(_setting("--fail-under", text) for text in options.fail_under)
         _check_metrics(bars)
-        config = read_config(options.config, [*options.set, *_shorthands(options)])
-        angles = {name: math.radians(angle) for name, angle in (_setting("--door", text) for text in options.door)}
-        obstacles = [_obstacle(text) for text in options.obstacle]
+        folder = _begun_folder(options)
+        order = read_order(folder) if folder else _order(options)
+        if folder and is_complete(folder):
+            console.print(f"the mission is complete, there is nothing to go on with: {folder}", soft_wrap=True)
+            return DONE
         streams = live_streams(view=options.view, connect=options.connect, serve=options.serve)
         if options.serve is not None:
             console.print(f"watch the mission:  rerun {address(options.serve)}", highlight=False, soft_wrap=True)
-        scene = load_scene(
-            find_scene(options.scene), door_angles=angles, keyframe=options.keyframe, obstacles=obstacles
-        )
+        scene = _scene(order)
+        recording = set_aside(folder) if folder else None
+        check_scene(recording, scene.xml)
         progress = TerminalProgress(console)
         stopwatch = Stopwatch(progress.stage)
-        with Mission(scene, config, seed=options.seed, stopwatch=stopwatch) as mission:
-            folder = make_folder(options.out, scene_name=options.scene)
+        earlier = Earlier(recording)
+        with Mission(scene, order.config, seed=order.seed, stopwatch=stopwatch, earlier=earlier) as mission:
+            folder = folder or make_folder(options.out, scene_name=options.scene)
+            write_order(folder, order)
             report, status = carry_out(
                 mission, folder, progress=progress, stopwatch=stopwatch, start=start, streams=streams
             )
@@ -205,6 +211,50 @@ def _setting(option: str, text: str) -> tuple[str, float]:
     if not equals or not name or not math.isfinite(number):
         raise UsageError(f"{option} {text}: expected NAME=NUMBER")
     return name, number
+
+
+def _order(options: argparse.Namespace) -> Order:
+    """What the command line asks for."""
+    if options.scene is None:
+        raise UsageError("what is to be scanned? run SCENE, or run --resume DIR")
+    obstacles = [_obstacle(text) for text in options.obstacle]
+    return Order(
+        scene=find_scene(options.scene),
+        seed=options.seed,
+        config=read_config(options.config, [*options.set, *_shorthands(options)]),
+        door_angles={name: math.radians(angle) for name, angle in (_setting("--door", t) for t in options.door)},
+        keyframe=options.keyframe,
+        obstacles=[(obstacle.x, obstacle.y, obstacle.time) for obstacle in obstacles],
+    )
+
+
+def _scene(order: Order) -> Scene:
+    """The scene that is asked for, as it is asked for."""
+    return load_scene(
+        find_scene(str(order.scene)),
+        door_angles=order.door_angles,
+        keyframe=order.keyframe,
+        obstacles=[Obstacle(*obstacle) for obstacle in order.obstacles],
+    )
+
+
+def _begun_folder(options: argparse.Namespace) -> Path | None:
+    """The folder of the mission to go on with; None to begin one."""
+    if options.resume is None:
+        return None
+    others = {
+        "SCENE": options.scene,
+        "--out": options.out,
+        "--seed": options.seed,
+        "--door": options.door,
+        "--obstacle": options.obstacle,
+        "--keyframe": options.keyframe,
+        "--config": options.config,
+        "--set and the like": [*options.set, *_shorthands(options)],
+    }
+    if given := [name for name, value in others.items() if value]:
+        raise UsageError(f"--resume takes scene, seed and parameters from its folder; leave out {', '.join(given)}")
+    return Path(options.resume)
 
 
 def _obstacle(text: str) -> Obstacle:

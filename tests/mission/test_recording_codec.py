@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -138,3 +139,7 @@ def test_the_table_of_topics_has_a_row_each_with_units() -> None:
     rows = table().splitlines()[2:]
     assert len(rows) == len(TOPICS)
     assert all("[m" in row or "[rad" in row for row in rows if "/tf" in row or "/laser" in row or "Drove" in row)
+
+
+def test_the_table_in_the_readme_is_that_of_the_code() -> None:
+    assert table() in (Path(__file__).parents[2] / "README.md").read_text()
