@@ -95,7 +95,7 @@ def cell_keys(points: NDArray[np.float32], cell: float) -> NDArray[np.int64]:
 
 
 def thin(
-    points: NDArray[np.float32], *, cell: float = 0.05, limit: int = 120_000, read: int = 1_500_000
+    points: NDArray[np.float32], *, cell: float = 0.05, limit: int = 120_000, read: int = 1_000_000
 ) -> NDArray[np.int64]:
     """Choose points for display: one a cell of a grid.
 

@@ -51,7 +51,7 @@ def draw_scatter(rec: rr.RecordingStream, doors: Sequence[DoorEvaluation]) -> No
 def _said(door: DoorEvaluation) -> str:
     """ "1.2-a: 34.8 ± 0.1 deg (joint 35.0)"."""
     deviation = np.degrees(door.opening_angle_std)
-    plus_minus = f" ± {deviation:.1g}" if np.isfinite(deviation) and door.door.kind != "sliding" else ""
+    plus_minus = f" ± {deviation:.1g}" if deviation > 0 and door.door.kind != "sliding" else ""
     return f"{door.door_id}: {degrees_text(door.door.opening_angle)}{plus_minus} {true_label(door)}"
 
 

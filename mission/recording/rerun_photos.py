@@ -34,6 +34,10 @@ if TYPE_CHECKING:
     from sim.photo import Photo
 
 
+LABEL = 0.08
+"""Height of a label in heights of the picture."""
+
+
 class Photos:
     """Shows the first photograph of each scan, and when a room is done those that show most of its doors."""
 
@@ -151,7 +155,7 @@ class Photos:
         self._rec.log(
             f"{entity}/labels",
             rr.Points2D(
-                [_top(lines) for lines, _, _ in measured],
+                label_places([_top(lines) for lines, _, _ in measured], pitch=LABEL * taken.height),
                 labels=[label for _, _, label in measured],
                 colors=[colour for _, colour, _ in measured],
                 radii=0.0,
@@ -161,6 +165,16 @@ class Photos:
 
 
 def _top(lines: Sequence[Line]) -> tuple[float, float]:
-    """Where to write above lines in a picture."""
+    """The middle above lines in a picture."""
     ends = np.concatenate(lines)
     return float((ends[:, 0].min() + ends[:, 0].max()) / 2), float(ends[:, 1].min())
+
+
+def label_places(tops: Sequence[tuple[float, float]], *, pitch: float) -> list[tuple[float, float]]:
+    """Where to write above doors in a picture: no two in one line, for the words are as wide as the picture."""
+    places = dict.fromkeys(range(len(tops)), (0.0, 0.0))
+    lowest = -np.inf
+    for number in sorted(places, key=lambda number: tops[number][1]):
+        lowest = max(tops[number][1] - pitch, lowest + pitch)
+        places[number] = tops[number][0], lowest
+    return list(places.values())

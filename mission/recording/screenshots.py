@@ -36,6 +36,10 @@ class ScreenshotError(MissionError):
     """There is no picture to be had."""
 
 
+class NoViewer(ScreenshotError):
+    """The viewer does not start: there is no Vulkan driver."""
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Take the pictures; exit status 1 if a view reports an error, 2 if there is no picture."""
     options = parser().parse_args(arguments)
@@ -116,7 +120,7 @@ def _viewer(size: str) -> Iterator[ViewerClient]:
 
     def connected() -> ViewerClient | None:
         if process.poll() is not None:
-            raise ScreenshotError("the viewer does not start: is a Vulkan driver there (apt: mesa-vulkan-drivers)?")
+            raise NoViewer("the viewer does not start: is a Vulkan driver there (apt: mesa-vulkan-drivers)?")
         try:
             viewer = ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
             viewer.get_state()

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from rerun.chunk import RrdReader
 
 from detector.result import Candidate, Rectangle
@@ -19,7 +18,6 @@ from mission.recording.rerun_doors import label_of
 from mission.recording.rerun_figures import column_heights
 from mission.recording.rerun_sink import RerunSink
 from mission.recording.rerun_walls import SHOWN_CANDIDATES, shown_candidates
-from mission.recording.shots import Shot
 from mission.stopwatch import Stopwatch
 from tests.mission import recording_room as made
 from tests.mission.recording_room import ESTIMATE, JOINT
@@ -163,45 +161,6 @@ def test_the_summary_quotes_every_door_and_every_miss(recording: Path) -> None:
     assert "| 1.2-a | single | semi-open | 0.90 x 2.10 | 30.0 ± 0.40 | 31.0 | -1.00 |" in text
     assert "missed: `lift`" in text
     assert "**completed**: one room; 2.0 m driven in 2 min 52 s" in text
-
-
-SHOT = Shot(b"", np.array([[80, 0, 60], [0, 80, 40], [0, 0, 1.0]]), 120, 80, 1, np.eye(4), np.eye(4))
-
-
-def upright(left: float, depth: float = 2.0) -> NDArray[np.float64]:
-    """A square of 1 m that faces the camera."""
-    return np.array([[left, -0.5, depth], [left + 1, -0.5, depth], [left + 1, 0.5, depth], [left, 0.5, depth]])
-
-
-def test_the_best_photograph_shows_a_door_whole_and_large() -> None:
-    whole = SHOT.shows([upright(-0.5)])  # f w / z = 80 * 1 / 2 = 40 px wide and tall
-    assert whole > SHOT.shows([upright(-0.5, depth=4.0)]) > 0  # 20 px
-    assert whole > 4 * SHOT.shows([upright(1.0)]) > 0  # half of it is cut off
-    assert SHOT.shows([upright(9.0)]) == 0
-    assert SHOT.shows([-upright(-0.5)]) == 0  # behind the camera
-
-
-def test_a_door_is_outlined_as_far_as_the_picture_has_it() -> None:
-    assert len(SHOT.outline(upright(-0.5))) == 4
-    cut = np.array(SHOT.outline(upright(1.0)))  # its left side is in column 60 + 80 * 1 / 2 = 100; the right one is out
-    assert len(cut) == 3
-    assert (cut[..., 0].min(), cut[..., 0].max()) == pytest.approx((100, 120))
-    beside = np.array([[1, -0.5, 2], [1, -0.5, -2], [1, 0.5, -2], [1, 0.5, 2.0]])  # goes on behind the camera
-    assert np.array(SHOT.outline(beside))[..., 0].max() == pytest.approx(120)
-    assert SHOT.outline(-upright(-0.5)) == []
-
-
-def test_a_door_behind_another_wall_is_not_in_the_photograph() -> None:
-    """The camera looks along y from (3, 1, 1); a wall of 2 m stands across, 1 m ahead, and the door 4 m ahead."""
-    looking = made.pose(3, 1, 1) @ np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1.0]])
-    shot = replace(SHOT, room_from_camera=looking)
-    door = np.array([[2.5, 5, 0], [3.5, 5, 0], [3.5, 5, 2], [2.5, 5, 2.0]])
-    far, screen = made.walls()[2], made.walls()[2]
-    far = replace(far, origin=np.array([0, 5.0, 0]))
-    screen = replace(screen, origin=np.array([2.0, 2.0, 0]), width=2.0)
-    assert shot.sees(door, [far])
-    assert not shot.sees(door, [far, screen])
-    assert shot.sees(door, [far, replace(screen, origin=np.array([4.0, 2.0, 0]))])  # beside the line of sight
 
 
 def judged(left: float, support: float, rejected_by: str | None) -> Candidate:
