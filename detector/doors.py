@@ -21,6 +21,7 @@ from detector.candidates import (
 )
 from detector.dominance import Dominance, dominance
 from detector.edges import find_edges
+from detector.frame import leaves_in_frames
 from detector.occluders import occluders
 from detector.openings import Visibility
 from detector.parallel import each
@@ -97,8 +98,9 @@ def find_doors(
     if parameters.faint_doors:
         searches.append((edges.faint_upright, edges.faint_level, True))
     (candidates, scene, (vertical, horizontal)), *fainter = each(lambda outline: search(*outline), searches)
+    candidates, leaves = leaves_in_frames(candidates, merged, height)
     for more, _, _ in fainter:
-        candidates += fainter_doors(more, candidates)
+        candidates += fainter_doors(tuple(c for c in more if not any(covers(c, leaf) for leaf in leaves)), candidates)
     candidates = smallest(candidates)
     result = DoorSearch(
         colour_edges=edges.colour,

@@ -7,26 +7,66 @@ A panel of the leaf does not.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from detector.orthoimage import column_medians
-from detector.result import Orthoimage, Rectangle
+from detector.result import Candidate, Orthoimage, Rectangle
 
 NARROWEST, WIDEST = 0.02, 0.15
 """Of frames [m]."""
-UNEVEN = 0.02
-"""The two sides and the head of a frame are as wide but for this [m]."""
-STEP = 0.005
-"""Least step from a frame down to its leaf [m]; medians of hundreds of points are good to a tenth of it."""
-FLAT = 0.002
-"""Depths of one plane differ by less [m]."""
+UNEVEN = 0.03
+"""The two sides and the head of a frame are as wide but for this [m]: seen aslant, its edges are blurred."""
+STEP, DEEPEST = 0.005, 0.06
+"""From a frame down to its leaf [m]; medians of hundreds of points are good to a tenth of the least step."""
+FLAT = 0.003
+"""Medians of the depth in one plane differ by less [m]."""
+MOST = 0.75
+"""Share of a strip's columns that lie in its plane; next to edges, some scans see past them."""
 BLUR = 0.01
 """Next to an edge depths are a mixture of both its sides [m]."""
 FOOT = 0.15
 """Above the floor, this much of the leaf must be as deep as its middle [m]; the bottom rail of a panel is higher."""
+
+
+def leaves_in_frames(
+    candidates: tuple[Candidate, ...], merged: Orthoimage, height: float
+) -> tuple[tuple[Candidate, ...], tuple[Candidate, ...]]:
+    """Cut those of the accepted candidates that took in a frame down to their leaf; what lies between is rejected.
+
+    Args:
+        height: Height of the wall [m].
+
+    Returns:
+        All candidates, and those of them that are such leaves.
+    """
+    leaves: list[Candidate] = []
+    outlines: list[tuple[Rectangle, Rectangle]] = []
+    for candidate in candidates:
+        if candidate.rejected_by is None:
+            leaf = without_frame(candidate.rectangle, merged, height)
+            if leaf is not candidate.rectangle:
+                leaves.append(replace(candidate, rectangle=leaf))
+                outlines.append((candidate.rectangle, leaf))
+    others = [
+        replace(candidate, rejected_by="minimum size")
+        if candidate.rejected_by is None and any(_between(candidate.rectangle, *pair) for pair in outlines)
+        else candidate
+        for candidate in candidates
+    ]
+    return (*leaves, *others), tuple(leaves)
+
+
+def _between(rectangle: Rectangle, outer: Rectangle, inner: Rectangle) -> bool:
+    """Whether a rectangle holds one rectangle and is held by another."""
+    return (
+        outer.left - BLUR < rectangle.left < inner.left + BLUR
+        and inner.right - BLUR < rectangle.right < outer.right + BLUR
+        and inner.top - BLUR < rectangle.top < outer.top + BLUR
+    )
 
 
 class _Strip(NamedTuple):
@@ -82,16 +122,20 @@ def _strip(band: NDArray[np.float32], level: float, px: float) -> _Strip | None:
     depths = np.full(band.shape[1], np.nan, np.float32)
     depths[known] = column_medians(band[:, known])
     face = _median(depths[blur : round(NARROWEST / px) + blur])
-    if not face - level > STEP:
+    if not STEP < face - level < DEEPEST:
         return None
     ends = np.flatnonzero(depths[blur:] < (face + level) / 2)
     if len(ends) == 0:
         return None
     end = blur + int(ends[0])
     frame, beyond = depths[blur : end - blur], depths[end + blur : end + 4 * blur]
-    is_frame = NARROWEST <= end * px <= WIDEST and len(frame) > 0 and np.nanmax(np.abs(frame - face)) < FLAT
-    is_leaf = len(beyond) > 0 and np.nanmax(np.abs(beyond - level)) < FLAT
-    return _Strip(end * px, face - level) if is_frame and is_leaf else None
+    is_frame = NARROWEST <= end * px <= WIDEST and _is_level(frame, face)
+    return _Strip(end * px, face - level) if is_frame and _is_level(beyond, level) else None
+
+
+def _is_level(depths: NDArray[np.float32], depth: float) -> bool:
+    """Whether columns of these depths lie in a plane of one depth."""
+    return len(depths) > 0 and float(np.mean(np.abs(depths - depth) < FLAT)) >= MOST
 
 
 def _median(values: NDArray[np.float32]) -> float:

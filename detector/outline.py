@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from detector.angle import closed_depth
 from detector.candidates import Scene
-from detector.frame import without_frame
 from detector.orthoimage import column_medians
 from detector.parameters import DetectorParameters
 from detector.result import Mask, Orthoimage, Rectangle
@@ -58,13 +57,17 @@ def settle_sides(
     face, values = scene.face & ~passed, components(scene.merged, parameters)
     nothing = np.zeros_like(passed)
 
-    def settled(found: Rectangle) -> Rectangle:
-        if _is_shallow(found, scene.merged, height, parameters):
-            leaf = without_frame(found, scene.merged, height)
-            return _settled(leaf, nothing, face, values, scene.merged, height)
-        return _settled(found, passed, face, values, scene.merged, height)
-
-    return tuple(settled(rectangle) for rectangle in rectangles)
+    return tuple(
+        _settled(
+            r,
+            nothing if _is_shallow(r, scene.merged, height, parameters) else passed,
+            face,
+            values,
+            scene.merged,
+            height,
+        )
+        for r in rectangles
+    )
 
 
 def _is_shallow(rectangle: Rectangle, merged: Orthoimage, height: float, parameters: DetectorParameters) -> bool:

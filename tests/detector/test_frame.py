@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from detector.frame import without_frame
-from detector.result import Orthoimage, Rectangle
+from detector.frame import leaves_in_frames, without_frame
+from detector.result import Candidate, Orthoimage, Rectangle
 from tests.detector.conftest import plain_image
 
 HEIGHT = 2.5
@@ -63,3 +63,22 @@ def test_a_door_of_which_nothing_is_seen_keeps_its_outline() -> None:
     image = wall()
     hidden = replace(image, depth=np.full_like(image.depth, np.nan))
     assert without_frame(WITH_FRAME, hidden, HEIGHT) == WITH_FRAME
+
+
+def candidate(rectangle: Rectangle, rejected_by: str | None = None) -> Candidate:
+    return Candidate(rectangle, 1.0, 1.0, (1.0, 1.0, 1.0, 1.0), 0.0, rejected_by)
+
+
+def test_of_candidates_the_leaf_in_the_frame_stays_and_those_in_between_go() -> None:
+    half, beside = replace(LEAF, right=1.97), Rectangle(0.1, 0.0, 0.8, 2.0)
+    found = tuple(map(candidate, (WITH_FRAME, half, beside)))
+    candidates, leaves = leaves_in_frames(found, wall(), HEIGHT)
+    assert [sides(c.rectangle) for c in leaves] == [pytest.approx(sides(LEAF), abs=0.006)]
+    accepted = [c.rectangle for c in candidates if c.rejected_by is None]
+    assert accepted == [leaves[0].rectangle, beside]
+    assert [c.rectangle for c in candidates if c.rejected_by == "minimum size"] == [WITH_FRAME, half]
+
+
+def test_candidates_that_were_rejected_make_no_leaves() -> None:
+    found = (candidate(WITH_FRAME, "floor"),)
+    assert leaves_in_frames(found, wall(), HEIGHT) == (found, ())
