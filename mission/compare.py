@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from mission.comparison import differences, doors_compared, doors_differ
+from mission.comparison import differences, doors_compared, doors_differ, stage_times
 from mission.errors import MissionError
 from mission.events import Coloured, DoorsDetected, Photographed, Scanned
 from mission.folders import BAD_INPUT, BELOW, DONE, LOG_WIDTH
@@ -28,11 +28,12 @@ def compare(options: argparse.Namespace) -> int:
         return BAD_INPUT
     console = Console(width=None if sys.stdout.isatty() else LOG_WIDTH)
     rows = differences(first, second)
-    if rows:
-        table = Table("what", "A", "B", title="the missions", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-        for row in rows:
-            table.add_row(*map(escape, row))
-        console.print(table)
+    for title, lines in (("the missions", rows), ("wall clock, no two runs have the same", stage_times(first, second))):
+        if lines:
+            table = Table("what", "A", "B", title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+            for line in lines:
+                table.add_row(*map(escape, line))
+            console.print(table)
     changed = doors_differ(first, second)
     if changed:
         console.print(doors_compared(first, second, "A", "B"))

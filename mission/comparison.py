@@ -54,6 +54,13 @@ def differences(first: Report, second: Report) -> list[Row]:
     return rows
 
 
+def stage_times(first: Report, second: Report) -> list[Row]:
+    """Wall clock time of each stage, where it differs."""
+    a, b = (dict(r.finished.cost.stage_seconds) if r.finished and r.finished.cost else {} for r in (first, second))
+    one, other = ({name: f"{seconds:.1f} s" for name, seconds in stages.items()} for stages in (a, b))
+    return _changed("", one, other)
+
+
 def _figures(report: Report, summary: Mapping[str, Any]) -> dict[str, Any]:
     """Numbers of a mission by their names."""
     figures: dict[str, Any] = {

@@ -31,6 +31,16 @@ if TYPE_CHECKING:  # events are plain data: making one must not import mujoco, o
     from sim.scan import Scan
 
 
+@dataclass(frozen=True)
+class Cost:
+    """What the mission took of this machine so far: for people, not part of any result."""
+
+    stage_seconds: tuple[tuple[str, float], ...]
+    """Wall clock time of each stage [s]."""
+    peak_memory: int
+    """Largest resident set of the process [bytes]."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Event:
     """Something that happened in the mission."""
@@ -41,6 +51,8 @@ class Event:
     """Mission time: simulated time since the start [ns]."""
     room: int = 1
     """Room that the robot is in, from 1."""
+    cost: Cost | None = None
+    """Told at the end of each scan, when doors were compared, and at the end of the mission."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

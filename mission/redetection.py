@@ -7,6 +7,7 @@ own, and need no simulator.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 from typing import Any, cast
 
 from mission.completion import Completion
@@ -105,7 +106,7 @@ class Redetection:
 
     def _begun(self) -> MissionStarted:
         old = self._started
-        content = {name: getattr(old, name) for name in vars(old) if name not in {"step", "time", "room"}}
+        content = _content(old)
         changed = {"config": self._config.model_dump(mode="json"), "versions": versions()}
         begun: MissionStarted = self._surveyor.event(MissionStarted, **content | changed)
         return begun
@@ -126,7 +127,7 @@ class Redetection:
             self._building.begin(number, place, event.how)
             self._beyond = self._room(number)
         self._rooms[number], self._newest = self._beyond, number
-        content = {name: getattr(event, name) for name in vars(event) if name not in {"step", "time", "room"}}
+        content = _content(event)
         placed: dict[str, Pose] = {"world_from_room": self._building.world_from_room[number]}
         entered: RoomEntered = self._surveyor.event(RoomEntered, **content | placed)
         return entered
@@ -166,6 +167,11 @@ class Redetection:
     def _complete(self, number: int) -> Iterator[Event]:
         if number in self._understood:
             yield from self._completion.complete(self._rooms[number], *self._understood.pop(number))
+
+
+def _content(event: Event) -> dict[str, Any]:
+    """What an event says, beside when and where."""
+    return {name: value for name, value in vars(event).items() if name not in {field.name for field in fields(Event)}}
 
 
 class _Ahead:

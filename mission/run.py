@@ -118,7 +118,7 @@ def carry_out(
         sinks: list[Sink] = [
             report,
             files.enter_context(progress),
-            files.enter_context(RerunSink(folder / "mission.rrd", streams, stopwatch=stopwatch)),
+            files.enter_context(RerunSink(folder / "mission.rrd", streams)),
             files.enter_context(McapSink(folder / "mission.mcap")),
         ]
         status = _pump(mission, sinks, interrupts, stopwatch)

@@ -15,9 +15,12 @@ from mission.config import MissionConfig
 from mission.driving import drive
 from mission.events import (
     Coloured,
+    Cost,
+    DoorsEvaluated,
     Drove,
     Event,
     Labelled,
+    MissionFinished,
     Photographed,
     Planned,
     Registered,
@@ -28,6 +31,7 @@ from mission.events import (
 from mission.explored_room import ExploredRoom
 from mission.joints import opening
 from mission.localisation import localise
+from mission.memory import peak_memory
 from mission.registration import Registration
 from mission.rigid import Pose, inverted
 from mission.samples import ScanSample, place, sample_scan
@@ -46,6 +50,10 @@ MAX_DETOURS = 3
 
 NO_ARRIVAL = "ways end early"
 """Reason to stop, beside those of the planner."""
+
+
+_COSTED = {Planned, DoorsEvaluated, MissionFinished}
+"""Events that tell what the mission took so far."""
 
 
 class Scene(Protocol):
@@ -71,15 +79,19 @@ class Surveyor:
 
     def event(self, kind: type[Any], *, room: int | None = None, **content: Any) -> Any:
         """The next event, of now, and of the room that the robot is in or of another."""
-        event = kind(step=self._steps, time=self._mopad.time, room=self.room if room is None else room, **content)
+        place = {"step": self._steps, "time": self._mopad.time, "room": self.room if room is None else room}
+        event = kind(**place, cost=self._cost(kind), **content)
         self._steps += 1
         return event
 
     def again(self, recorded: Event) -> Event:
         """A recorded event as the next one."""
-        event = replace(recorded, step=self._steps)
+        event = replace(recorded, step=self._steps, cost=self._cost(type(recorded)))
         self._steps += 1
         return event
+
+    def _cost(self, kind: type[Event]) -> Cost | None:
+        return Cost(tuple(self._stopwatch.seconds.items()), peak_memory()) if kind in _COSTED else None
 
     def remark(self, text: str) -> Remarked:
         """Something that a person should know."""

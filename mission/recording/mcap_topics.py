@@ -48,7 +48,7 @@ _EVENTS: dict[type[events.Event], str] = {
     events.DoorsDetected: "heights of floor and ceiling [m]; the walls come before",
     events.DoorsEvaluated: "doors in the map [m, rad] beside the true ones; names of those that were missed",
     events.Remarked: "something worth telling a person",
-    events.MissionFinished: "how the mission ended",
+    events.MissionFinished: "how the mission ended; wall clock time of each stage [s], memory [bytes]",
 }
 _PARTS: dict[type[events.Event], str] = {
     events.Photographed: "a photograph: sRGB, intrinsics [px], pose on the scanner [m]; truth: levels by which the "

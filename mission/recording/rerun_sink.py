@@ -28,13 +28,13 @@ from mission.recording.rerun_results import Results
 from mission.recording.rerun_rooms import Rooms
 from mission.recording.rerun_walls import Walls
 from mission.recording.rerun_world import World
-from mission.stopwatch import Stopwatch
 
 logger = logging.getLogger(__name__)
 
 APPLICATION = "door-mission"
 
 _Drawer = World | Clouds | Plans | Doors | Photos | Walls | Rooms | Plots | Results | Costs
+_DRAWERS = (World, Clouds, Plans, Doors, Photos, Walls, Rooms, Plots, Results, Costs)
 
 
 class RerunSink:
@@ -44,17 +44,15 @@ class RerunSink:
     is simulated time, `scan` and `room` count. Wall clock times are not recorded, save those that the detector took.
     """
 
-    def __init__(self, path: Path, streams: Sequence[Stream] = (), *, stopwatch: Stopwatch | None = None) -> None:
+    def __init__(self, path: Path, streams: Sequence[Stream] = ()) -> None:
         """Record into a file, which is overwritten; it is opened by the first event.
 
         Args:
             path: Of the file.
             streams: To viewers that follow; the file does not suffer when they go away.
-            stopwatch: Of a mission that runs now; None for one that is over, which takes nothing any more.
         """
         self._path = path
         self._streams = tuple(streams)
-        self._stopwatch = stopwatch
         self._followed = True
         self._closing = ExitStack()
         self._drawers: list[_Drawer] = []
@@ -108,9 +106,7 @@ class RerunSink:
         legend = [rr.AnnotationInfo(number, label, colour) for number, label, colour in entities.LEGEND]
         for root in (entities.WORLD, entities.STAGES_OF_WALLS):
             rec.log(root, rr.AnnotationContext(legend), static=True)
-        self._drawers = [drawer(rec) for drawer in (World, Clouds, Plans, Doors, Photos, Walls, Rooms, Plots, Results)]
-        if self._stopwatch:
-            self._drawers.append(Costs(rec, self._stopwatch))
+        self._drawers = [drawer(rec) for drawer in _DRAWERS]
 
     def _lay_out(self, event: Event) -> None:
         """Fit the viewer's layout to what is known by now: an interrupted recording opens well, too.
