@@ -34,8 +34,8 @@ class PackedArray:
     steps: float
     """Values are whole multiples of 1 / steps, and kept as such; 0 where they are not."""
     planes: int
-    """How many bytes of each value are kept, lowest first, all values' first bytes before the second ones; 0 for an
-    array that is kept as it is, truth values as bits."""
+    """How many bytes of each value are kept, lowest first, all values' first bytes before the second ones; of whole
+    multiples 2 or 4, the width of their numbers; 0 for an array that is kept as it is, truth values as bits."""
     data: bytes
 
 
@@ -60,8 +60,10 @@ def pack(array: NDArray[Any], *, steps: float = 0.0) -> PackedArray:
     if array.dtype.kind != "f":
         planes = _planes(rows, _differences)
     elif steps and array.itemsize == 4:
+        largest = max(-float(np.fmin.reduce(array, axis=None)), float(np.fmax.reduce(array, axis=None))) * steps
+        width = np.dtype("<i4" if largest >= -NOTHING else "<i2")
         try:
-            planes = _planes(rows, lambda block: _differences(_whole(block, steps)))
+            planes = _planes(rows, lambda block: _differences(_whole(block, steps, width)), width.itemsize)
         except _NotWholeError:
             return pack(array)
     else:
@@ -79,7 +81,9 @@ def unpack(packed: PackedArray) -> NDArray[Any]:
     count = math.prod(packed.shape)
     bits = 1 if dtype.kind == "b" else 8 * (packed.planes or dtype.itemsize)
     sound = min(packed.shape, default=0) >= 0 and len(packed.data) == (count * bits + 7) // 8
-    if not sound or packed.planes not in range(dtype.itemsize + 1) or (packed.steps and packed.dtype != "<f4"):
+    if packed.steps and (packed.dtype != "<f4" or packed.planes not in (2, 4)):
+        sound = False
+    if not sound or packed.planes not in range(dtype.itemsize + 1):
         raise UsageError(f"{len(packed.data)} bytes are no array of {packed.dtype} and shape {list(packed.shape)}")
     raw = np.frombuffer(packed.data, np.uint8)
     if dtype.kind == "b":
@@ -115,18 +119,24 @@ def _each_block(rows: NDArray[np.generic], work: Callable[[slice], object]) -> N
         list(pool.map(work, blocks))
 
 
-def _planes(rows: NDArray[Any], change: Callable[[NDArray[Any]], NDArray[Any]]) -> NDArray[np.uint8]:
-    """(P, ...) lowest bytes of all changed values, then the next ones, up to the last that is not all zero."""
-    planes = np.empty((rows.itemsize, *rows.shape), np.uint8)
-    used = np.zeros(rows.itemsize, bool)
+def _planes(
+    rows: NDArray[Any], change: Callable[[NDArray[Any]], NDArray[Any]], size: int | None = None
+) -> NDArray[np.uint8]:
+    """(P, ...) lowest bytes of all changed values, then the next ones.
+
+    With a size [bytes], which says what the values were changed into, all of them; else to the last that is not zero.
+    """
+    width = size or rows.itemsize
+    planes = np.empty((width, *rows.shape), np.uint8)
+    used = np.full(width, size is not None)
     used[0] = True
 
     def sort_out(block: slice) -> None:
         values = np.ascontiguousarray(change(rows[block]))
-        sorted_out = values.view(np.uint8).reshape(*values.shape, rows.itemsize)
-        for place in range(rows.itemsize):
+        sorted_out = values.view(np.uint8).reshape(*values.shape, width)
+        for place in range(width):
             planes[place, block] = sorted_out[..., place]
-            used[place] |= planes[place, block].any()
+            used[place] |= used[place] or planes[place, block].any()
 
     _each_block(rows, sort_out)
     return planes[: 1 + int(np.flatnonzero(used)[-1])]
@@ -134,7 +144,7 @@ def _planes(rows: NDArray[Any], change: Callable[[NDArray[Any]], NDArray[Any]]) 
 
 def _unpack_block(planes: NDArray[np.uint8], values: NDArray[Any], steps: float) -> None:
     """Fill values from their planes."""
-    whole = np.dtype("<i4") if steps else values.dtype
+    whole = np.dtype(f"<i{len(planes)}") if steps else values.dtype
     joined = np.zeros((*values.shape, whole.itemsize), np.uint8)
     for place, plane in enumerate(planes):
         joined[..., place] = plane
@@ -150,8 +160,8 @@ def _unpack_block(planes: NDArray[np.uint8], values: NDArray[Any], steps: float)
     values[found == NOTHING] = np.nan
 
 
-def _whole(values: NDArray[Any], steps: float) -> NDArray[np.int32]:
-    """Multiples of 1 / steps as int32.
+def _whole(values: NDArray[Any], steps: float, width: np.dtype) -> NDArray[Any]:
+    """Multiples of 1 / steps as whole numbers of a width.
 
     Raises:
         _NotWholeError: They do not give the very same values back.
@@ -162,7 +172,7 @@ def _whole(values: NDArray[Any], steps: float) -> NDArray[np.int32]:
     np.rint(scaled, out=scaled)
     if not max(-float(scaled.min()), float(scaled.max())) < 1 << 24:  # float32 does not hold every whole number beyond
         raise _NotWholeError
-    whole = scaled.astype(np.int32)
+    whole = scaled.astype(width)
     scaled /= values.dtype.type(steps)
     bits = f"u{values.itemsize}"  # -0.0 is not 0.0
     same = scaled.view(bits) == values.view(bits)
