@@ -187,7 +187,7 @@ class _Decoder:
     def _decoded(self, kind: RecordType, content: Any, **others: Any) -> Any:
         try:
             return decode(kind, content, **others)
-        except (AttributeError, TypeError, ValueError) as error:  # a field that is something else
+        except (AttributeError, TypeError, ValueError, RecursionError) as error:  # a field that is something else
             raise UsageError(f"{self._path}: {kind.__name__} was recorded by another version ({error})") from error
         except UsageError as error:
             raise UsageError(f"{self._path}: {error}") from error

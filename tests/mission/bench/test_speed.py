@@ -9,13 +9,14 @@ import mujoco
 import numpy as np
 import pytest
 
-from mission.__main__ import SPEED_PARTS, main
+from mission.__main__ import main
 from mission.bench.speed import command, rivals
 from mission.bench.speed.beams import OURS, Caster
 from mission.bench.speed.missions import MissionTime
 from mission.bench.speed.report import SpeedReport, write_report
 from mission.bench.speed.timing import Timing, growth_exponent, in_turns
 from mission.bench.speed.worlds import World, cluttered_world, cluttered_xml
+from mission.bench_arguments import SPEED_PARTS
 
 
 def test_contenders_take_turns_and_the_first_turn_does_not_count() -> None:
