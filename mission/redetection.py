@@ -120,12 +120,13 @@ class Redetection:
         if self._newest not in self._building.rooms:
             self._building.drop(self._newest)
         number, place = event.room, event.world_from_base[:3, 3]
-        if event.how == "door":
-            assert event.before is not None
-            self._building.enter_from(event.before, number, place)
-        else:
+        if event.how != "door":
             self._building.begin(number, place, event.how)
             self._beyond = self._room(number)
+        elif event.before in self._building.world_from_room:
+            self._building.enter_from(event.before, number, place)
+        else:  # judged with these parameters the room before is none
+            self._building.begin(number, place, "set down")
         self._rooms[number], self._newest = self._beyond, number
         content = _content(event)
         placed: dict[str, Pose] = {"world_from_room": self._building.world_from_room[number]}

@@ -100,6 +100,14 @@ def test_judged_again_from_its_recording_the_house_is_the_same_to_the_last_byte(
     assert (tmp_path / "doors.json").read_bytes() == (house / "doors.json").read_bytes()
 
 
+def test_judged_by_parameters_that_leave_no_room_there_are_no_doors_and_nothing_breaks(
+    house: Path, tmp_path: Path
+) -> None:
+    options = ["--redetect", "--set", "structure.min_level_area=99", "--quiet", "--out", str(tmp_path)]
+    assert main(["replay", str(house / "mission.mcap"), *options]) == 0
+    assert [room["doors"] for room in read(tmp_path, "doors.json")["rooms"]] == [[], [], []]
+
+
 def test_a_mission_ends_after_as_many_rooms_as_are_asked_for(tmp_path: Path) -> None:
     (tmp_path / "house.xml").write_text(HOUSE)
     options = ["--door", "open_door=95", "--max-rooms", "1", "--quiet", "--out", str(tmp_path)]
