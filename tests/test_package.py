@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 import zipfile
@@ -72,3 +73,9 @@ def test_the_wheel_carries_its_assets_and_works_from_any_folder(tmp_path: Path) 
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2
     assert "study_door" in done.stderr
+
+
+def test_the_pictures_of_the_readme_are_there_and_small() -> None:
+    pictures = re.findall(r"\]\((assets/[^)]+)\)", (ROOT / "README.md").read_text())
+    assert len(set(pictures)) >= 3
+    assert all((ROOT / picture).stat().st_size < 400_000 for picture in pictures)

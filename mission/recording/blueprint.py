@@ -108,25 +108,32 @@ def _wall(wall: WallTab) -> rrb.Container:
     """The paper's stages from left to right, top to bottom."""
     root = entities.stages(wall.name)
     merged = f"+ {root}/merged/colour"
-    beams = f"{root}/openings/visibility/**"
     area = f"+ {root}/wall_area"
-    views = rrb.Tabs(*(_view(wall, number) for number in range(wall.views)), active_tab=wall.first_view)
-    cells: list[rrb.Container | rrb.View] = [
-        _image(wall, "Merged (4.2) and the doors found", merged, f"+ {root}/merged/doors/**"),
+    doors = _image(wall, "Merged (4.2) and the doors found", merged, f"+ {root}/merged/doors/**")
+    openings = _image(wall, "Openings (5)", f"+ {root}/openings/**", f"- {root}/openings/visibility/**", below=ROW)
+    edges = _image(wall, "Edges (6.2)", f"+ {root}/edges/**", below=ROW)
+    candidates = _image(
+        wall, "Candidates (6.2), accepted or rejected by", merged, f"+ {root}/candidates/**", beside=COLUMN
+    )
+    if not wall.has_doors:  # folded away, and less of it: a building has dozens, and a viewer opens them all
+        return rrb.Grid(doors, openings, edges, candidates, grid_columns=2, name=f"Wall {wall.name}", visible=False)
+    stages = rrb.Grid(
+        doors,
         _image(wall, "Depth from the wall plane", f"+ {root}/merged/depth/**", below=ROW),
         rrb.Tabs(
-            _image(wall, "Openings (5)", f"+ {root}/openings/**", f"- {beams}", below=ROW),
-            _image(wall, "What the beams met", f"+ {beams}", below=ROW),
+            openings,
+            _image(wall, "What the beams met", f"+ {root}/openings/visibility/**", below=ROW),
             active_tab=0,
         ),
         _image(wall, "Wall area (6.1): clusters of seeds", f"{area}/clusters", f"{area}/seeds/**", below=ROW),
         _image(wall, "Wall area (6.1): on the wall", merged, f"{area}/mask/**", below=ROW),
-        _image(wall, "Edges (6.2)", f"+ {root}/edges/**", below=ROW),
-        _image(wall, "Candidates (6.2), accepted or rejected by", merged, f"+ {root}/candidates/**", beside=COLUMN),
-        _photograph(wall),
-    ]
-    stages = rrb.Grid(*cells, grid_columns=2)
-    return rrb.Horizontal(views, stages, column_shares=[1, 2], name=f"Wall {wall.name}", visible=wall.has_doors)
+        edges,
+        candidates,
+        rrb.Spatial2DView(origin=f"{entities.SHOTS}/{wall.name}", name="Photograph with the doors"),
+        grid_columns=2,
+    )
+    views = rrb.Tabs(*(_view(wall, number) for number in range(wall.views)), active_tab=wall.first_view)
+    return rrb.Horizontal(views, stages, column_shares=[1, 2], name=f"Wall {wall.name}")
 
 
 def _view(wall: WallTab, number: int) -> rrb.Container:
@@ -138,10 +145,6 @@ def _view(wall: WallTab, number: int) -> rrb.Container:
         _image(wall, "Inpainted (4.2)", f"+ {view}/inpainted"),
         name=f"View {number + 1}",
     )
-
-
-def _photograph(wall: WallTab) -> rrb.View:
-    return rrb.Spatial2DView(origin=f"{entities.SHOTS}/{wall.name}", name="Photograph with the doors")
 
 
 def _image(wall: WallTab, name: str, *contents: str, below: float = 0.0, beside: float = 0.0) -> rrb.View:

@@ -112,6 +112,8 @@ def thin(
         (M,) indices of the chosen points, ascending.
     """
     stride = max(1, -(-len(points) // read))
+    while stride > 1 and any(stride % divisor == 0 for divisor in (2, 3, 5)):
+        stride += 1  # with a divisor in common with the beams of a turn, whole columns of beams would be left out
     sample = points[::stride]
     if len(sample) == 0:
         return np.zeros(0, np.int64)

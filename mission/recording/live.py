@@ -69,6 +69,7 @@ def _started() -> str:
     if viewer.poll() is not None or not _listens(HOST, port):
         viewer.kill()
         raise UsageError("--view: the viewer does not start; --serve and --connect need no screen")
+    viewer.returncode = 0  # it is on its own from now on
     return address(port)
 
 

@@ -61,6 +61,7 @@ class RerunSink:
         self._walls: list[WallTab] = []
         self._shown: tuple[WallTab, ...] = ()
         self._known_rooms: set[int] = set()
+        self._judged_rooms: set[int] = set()
 
     def __enter__(self) -> Self:
         self._closing.callback(rr.set_strict_mode, rr.strict_mode())  # it is global, and not ours
@@ -111,7 +112,7 @@ class RerunSink:
     def _lay_out(self, event: Event) -> None:
         """Fit the viewer's layout to what is known by now: an interrupted recording opens well, too.
 
-        As a layout takes up to half a megabyte a room, only the walls of the room just done are in it until the end.
+        A layout takes space, and a viewer its time: there is one a room, with the walls of this room until the end.
         """
         match event:
             case MissionStarted():
@@ -121,16 +122,18 @@ class RerunSink:
                 self._send_layout(())
             case Structured() if event.structure.walls and event.room not in self._known_rooms:
                 self._known_rooms.add(event.room)
-                walls = [outline(wall) for wall in event.structure.walls]
-                before = [self._outlook.seen] if len(self._known_rooms) > 1 else []
-                self._outlook = outlook(np.concatenate([*before, *walls]))
-                self._send_layout(())
+                outlines = [outline(wall) for wall in event.structure.walls]
+                first = len(self._known_rooms) == 1
+                self._outlook = outlook(np.concatenate([*([] if first else [self._outlook.seen]), *outlines]))
+                if first:
+                    self._send_layout(())
             case DoorsDetected():
                 self._walls += _wall_tabs(event)
-            case DoorsEvaluated():
+            case DoorsEvaluated() if event.room not in self._judged_rooms:  # a room that links move is judged again
+                self._judged_rooms.add(event.room)
                 leaves = [leaf for door in event.doors for leaf in door.leaf_corners_in_world]
                 self._outlook = outlook(np.concatenate([self._outlook.seen, *leaves]))
-                self._send_layout([wall for wall in self._walls if wall.room == event.room])
+                self._send_layout([wall for wall in self._walls if wall.room == event.room and wall.has_doors])
 
     def _send_layout(self, walls: Sequence[WallTab]) -> None:
         self._shown = tuple(walls)

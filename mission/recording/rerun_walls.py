@@ -121,7 +121,7 @@ def _draw_wall_area(rec: rr.RecordingStream, entity: str, result: WallResult) ->
     """Section 6.1, figure 8."""
     area = result.wall_area
     clusters = np.where(area.clusters > 0, area.clusters + entities.CLUSTERS, entities.NOTHING)
-    rec.log(f"{entity}/clusters", rr.SegmentationImage(clusters.astype(np.uint16)))
+    rec.log(f"{entity}/clusters", rr.SegmentationImage(clusters.astype(np.min_scalar_type(clusters.max()))))
     kept = area.seeds[area.seed_clusters > 0]
     rec.log(
         f"{entity}/seeds",

@@ -154,7 +154,12 @@ class World:
         names = [f"wall {entities.wall_name(room, number)}" for number in range(1, len(outlines) + 1)]
         entity = child(entities.WALLS, room)
         self._places.belongs(entity, room)
-        self._rec.log(f"{entity}/outlines", rr.LineStrips3D(outlines, colors=WALL_COLOUR, radii=0.01))
+        sizes = np.array([np.linalg.norm(np.diff(line, axis=0), axis=1)[:2] for line in outlines]).reshape(-1, 2)
+        self._rec.log(
+            f"{entity}/outlines",
+            rr.LineStrips3D(outlines, colors=WALL_COLOUR, radii=0.01),
+            *hover(width_m=sizes[:, 0], height_m=sizes[:, 1]),
+        )
         tops = [0.85 * line[3] + 0.15 * line[2] for line in outlines]  # left in the upper edge: doors are labelled, too
         self._labelled.add(f"{entity}/names")
         self._rec.log(

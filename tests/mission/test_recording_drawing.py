@@ -46,6 +46,15 @@ def test_thinning_is_limited_whatever_comes() -> None:
     assert len(np.unique(chosen)) == len(chosen)
 
 
+def test_a_dense_scan_is_thinned_without_stripes() -> None:
+    """A turn of 6000 beams over 3 m of wall, 60 rows over 1.2 m: 60 x 24 cells, and one to either side."""
+    across, up = np.meshgrid(np.linspace(0, 3, 6000, dtype=np.float32), np.linspace(0, 1.2, 60, dtype=np.float32))
+    points = np.stack([across.ravel(), np.zeros(360_000, np.float32), up.ravel()], axis=1)
+    chosen = points[thin(points, read=4000)]  # every 90th beam would be 67 columns
+    columns = np.unique(np.rint(chosen[:, 0] / 0.05))
+    assert len(columns) == 61
+
+
 def test_the_grid_moves_a_point_by_a_millimetre_at_most() -> None:
     points = np.random.default_rng(0).uniform(-50, 50, (1000, 3)).astype(np.float32)
     assert np.abs(on_grid(points) - points).max() <= 0.5 / 512 + 4e-6  # and float32's own step at 50 m

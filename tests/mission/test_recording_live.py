@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+import os
+import signal
 import socket
 import subprocess
 import sys
@@ -132,6 +134,23 @@ def test_a_viewer_that_is_not_there_is_an_error_of_one_line(capsys: pytest.Captu
     url = live.address(free_port())
     assert main(["run", "room.xml", "--connect", url]) == 2
     assert capsys.readouterr().err == f"error: --connect {url}: no viewer listens there\n"
+
+
+@pytest.mark.filterwarnings("ignore:.*footer")
+def test_a_viewer_that_is_opened_gets_every_event_and_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    got, program, pid = tmp_path / "got.rrd", tmp_path / "viewer", tmp_path / "pid"
+    program.write_text(f'#!/bin/sh\necho $$ > {pid}\nexec {live.VIEWER} --save {got} "$@"\n')  # it has no window
+    program.chmod(0o755)
+    monkeypatch.setenv("DISPLAY", ":77")
+    monkeypatch.setattr(live, "VIEWER", program)
+    monkeypatch.setattr(live, "FRESH", 0.0)
+    try:
+        with RerunSink(tmp_path / "mission.rrd", live.live_streams(view=True)) as sink:
+            for event in story():
+                sink.handle(event)
+        wait(lambda: lines(got) == len(story()))
+    finally:
+        os.kill(int(pid.read_text()), signal.SIGKILL)
 
 
 @pytest.mark.parametrize("display", ["", ":77"])
