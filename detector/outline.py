@@ -133,15 +133,16 @@ def _edge(hole: NDArray, face: NDArray, position: float, reach: int, otherwise: 
     for border in borders:
         if hole[border : border + BORDER_PX].min() < ABSENT:
             continue
-        for end in range(
-            border - 1, max(border - 2 - REVEAL_PX, BORDER_PX - 1), -1
-        ):  # of the face, as far as it is sure
+        for end in range(border - 1, max(border - 2 - REVEAL_PX, BORDER_PX - 1), -1):
             if face[end - BORDER_PX : end].min() < ABSENT:
                 continue
+            # the face is sure up to `end`
             if (hole[end:border] + face[end:border]).max() < NEITHER:  # beams met the reveal; the face ends before it
                 return float(end - 0.5 + face[end:border].sum())
-            # a beam passed somewhere in the outermost pixel; before it, one may be hole in part of the rows
-            return border + 0.5 - float(hole[border - 1]) if end == border - 1 else otherwise
+            if end == border - 1:
+                # a beam passed somewhere in the outermost pixel; before it, one may be hole in part of the rows
+                return border + 0.5 - float(hole[end])
+            break
     return otherwise
 
 

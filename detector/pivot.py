@@ -18,8 +18,8 @@ from detector.result import Leaf, Rectangle
 
 LEAST_ANGLE, LARGEST_ANGLE = np.deg2rad(85.0), np.deg2rad(115.0)
 """Below, the leaf's edge lies well behind the wall's face; above, a hinge 1 cm behind it moves the side by 5 mm."""
-THICKNESS = (0.02, 0.08)
-"""Of leaves [m]."""
+THICKNESS = (0.032, 0.052)
+"""Of the leaves of inner doors, with the noise of two faces [m]: what is farther from a face is a wall beside it."""
 USUAL_THICKNESS = 0.04
 """Of inner doors, 39 to 42 mm [m]."""
 BIN = 0.005
@@ -30,7 +30,7 @@ WELL_BESIDE = 0.1
 """Somebody nearer to the leaf's plane sees neither face well [m]."""
 FIRST_RADIUS = 0.1
 """Points nearer to the hinge may be of the frame [m]."""
-SHARE = 0.02
+SHARE = 0.05
 """Least part of the points of the one face that the other has, if it was seen."""
 
 

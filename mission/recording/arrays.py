@@ -83,7 +83,7 @@ def unpack(packed: PackedArray) -> NDArray[Any]:
     sound = min(packed.shape, default=0) >= 0 and len(packed.data) == (count * bits + 7) // 8
     if packed.steps and (packed.dtype != "<f4" or packed.planes not in (2, 4)):
         sound = False
-    if not sound or packed.planes not in range(dtype.itemsize + 1):
+    if not sound or packed.planes not in range(dtype.itemsize + 1) or (packed.planes and not count):
         raise UsageError(f"{len(packed.data)} bytes are no array of {packed.dtype} and shape {list(packed.shape)}")
     raw = np.frombuffer(packed.data, np.uint8)
     if dtype.kind == "b":
@@ -136,7 +136,8 @@ def _planes(
         sorted_out = values.view(np.uint8).reshape(*values.shape, width)
         for place in range(width):
             planes[place, block] = sorted_out[..., place]
-            used[place] |= used[place] or planes[place, block].any()
+            if not used[place] and planes[place, block].any():  # blocks are worked on side by side: only ever set it
+                used[place] = True
 
     _each_block(rows, sort_out)
     return planes[: 1 + int(np.flatnonzero(used)[-1])]
