@@ -192,5 +192,5 @@ def _percent() -> rrb.View:
 
 
 def _log() -> rrb.View:
-    columns = rrb.TextLogColumns(text_log_columns=["LogLevel", "Body"])
+    columns = rrb.TextLogColumns(timeline_columns=["mission_time"], text_log_columns=["LogLevel", "Body"])
     return rrb.TextLogView(origin=entities.LOG, name="Log", columns=columns)
