@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 
 from mission.config import MissionConfig, changed_config
 from mission.errors import UsageError
+from mission.report import write_json
 
 FILE = "order.json"
 """In the folder of the results."""
@@ -39,7 +41,7 @@ def write_order(folder: Path, order: Order) -> None:
         "obstacles": [list(obstacle) for obstacle in order.obstacles],
         "config": order.config.model_dump(mode="json"),
     }
-    (folder / FILE).write_text(json.dumps(content, indent=2) + "\n")
+    write_json(folder / FILE, content)
 
 
 def read_order(folder: Path) -> Order:
@@ -55,9 +57,11 @@ def read_order(folder: Path) -> Order:
             scene=Path(content["scene"]),
             seed=int(content["seed"]),
             config=changed_config(content["config"], ()),
-            door_angles={str(name): float(angle) for name, angle in content["door_angles"].items()},
-            keyframe=content["keyframe"],
-            obstacles=[(float(x), float(y), time) for x, y, time in content["obstacles"]],
+            door_angles={str(name): _finite(angle) for name, angle in content["door_angles"].items()},
+            keyframe=None if content["keyframe"] is None else str(content["keyframe"]),
+            obstacles=[
+                (_finite(x), _finite(y), None if time is None else _finite(time)) for x, y, time in content["obstacles"]
+            ],
         )
     except FileNotFoundError as error:
         raise UsageError(f"no mission was begun in this folder (it has no {FILE}): {folder}") from error
@@ -65,3 +69,10 @@ def read_order(folder: Path) -> Order:
         raise UsageError(f"{error.strerror}: {path}") from error
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise UsageError(f"not the order of a mission: {path}") from error
+
+
+def _finite(value: Any) -> float:
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{value} is no number")
+    return number

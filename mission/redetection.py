@@ -19,6 +19,7 @@ from mission.events import (
     DoorsEvaluated,
     Event,
     Labelled,
+    MissionFinished,
     MissionStarted,
     Photographed,
     Registered,
@@ -42,6 +43,8 @@ from sim.door_truth import DoorTruth
 
 UNUSED = (Coloured, DoorsDetected)
 """What need not be read of a recording that is judged again: large, and made anew."""
+USED = ("samples", "registration", "links", "structure", "voxels", "navigation.exits", "detector")
+"""Parts of the configuration that judging again depends on."""
 _MADE_ANEW = (*UNUSED, Labelled, DoorsEvaluated)
 
 
@@ -145,12 +148,17 @@ class Redetection:
                 case Registered():
                     self._mopad.stand(scanned, photographed, event)
                     break
+                case MissionFinished():  # stopped before the scan was registered
+                    yield self._surveyor.again(event)
+                    return
                 case _:
                     raise MissionError(f"scan {scanned.scan_number} was not registered")
         else:
             return  # the recording ends here
         if not event.accepted:
             next(events, None)  # the remark that says so is made anew
+        if scanned.room not in self._rooms:
+            raise MissionError(f"scan {scanned.scan_number} was taken in a room that was never entered")
         room = self._rooms[scanned.room]
         if photographed is not None:
             yield from self._surveyor.scan_here(room, photograph=True)
@@ -180,7 +188,8 @@ class _Ahead:
 
     def __init__(self, events: Iterator[Event]) -> None:
         self._events = events
-        self.next = next(events, None)
+        self._error: MissionError | None = None
+        self.next = self._fetched()
 
     def __iter__(self) -> _Ahead:
         return self
@@ -188,6 +197,16 @@ class _Ahead:
     def __next__(self) -> Event:
         event = self.next
         if event is None:
+            if self._error is not None:
+                raise self._error
             raise StopIteration
-        self.next = next(self._events, None)
+        self.next = self._fetched()
         return event
+
+    def _fetched(self) -> Event | None:
+        """The next event; where the recording breaks off, nothing, until its turn has come."""
+        try:
+            return next(self._events, None)
+        except MissionError as error:
+            self._error = error
+            return None

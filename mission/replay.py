@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
 
 from rich.console import Console
 
+from detector.room import DetectorError
 from mission.comparison import doors_compared
 from mission.config import changed_config
 from mission.errors import MissionError, UsageError
@@ -20,7 +21,7 @@ from mission.memory import release_freed_memory
 from mission.progress import TerminalProgress
 from mission.recording.mcap_reader import DamagedError, read_events
 from mission.recording.mcap_sink import McapSink
-from mission.redetection import UNUSED, Redetection
+from mission.redetection import UNUSED, USED, Redetection
 from mission.report import Report, write_json
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
@@ -43,11 +44,12 @@ def replay(options: argparse.Namespace) -> int:
         events = _noted(read_events(path, without=UNUSED if options.redetect else ()), before)
         first = _first(events, path)
         if options.redetect:
+            _check_used(options.set)
             config = changed_config(first.config, options.set)
             told = Redetection(first, config, stopwatch=stopwatch).run(events)
         else:
             told = _with(first, events)
-        folder = _folder(options.out, path, "replay")
+        folder = _folder(options.out, path, "replay", ("mission.rrd", RECORDING, "doors.json", "summary.json"))
     except MissionError as error:
         return _bad(error)
     report = Report()
@@ -75,7 +77,7 @@ def recover(options: argparse.Namespace) -> int:
     try:
         events = read_events(path)
         first = _first(events, path)
-        folder = _folder(options.out, path, "recovered")
+        folder = _folder(options.out, path, "recovered", (path.name,))
         saved = folder / path.name
         last: Event = first
         fault = "nothing was wrong with it"
@@ -86,11 +88,18 @@ def recover(options: argparse.Namespace) -> int:
                     release_freed_memory()
             except DamagedError as error:
                 fault = str(error)
-    except MissionError as error:
+    except (MissionError, OSError) as error:
         return _bad(error)
     console.print(fault, highlight=False, soft_wrap=True)
     console.print(f"{last.step + 1} events are saved in {saved}", highlight=False, soft_wrap=True)
     return DONE
+
+
+def _check_used(settings: Sequence[str]) -> None:
+    """Refuse parameters that would be recorded and change nothing."""
+    for setting in settings:
+        if not setting.startswith(tuple(f"{part}." for part in USED)):
+            raise UsageError(f"--set {setting}: --redetect does not do this again; it uses {', '.join(USED)}")
 
 
 def _console(options: argparse.Namespace) -> Console:
@@ -121,13 +130,22 @@ def _noted(events: Iterator[Event], report: Report) -> Iterator[Event]:
         yield event
 
 
-def _folder(out: str | None, path: Path, what: str) -> Path:
-    """Where the results go: never where the recording is."""
+def _folder(out: str | None, path: Path, what: str, targets: Sequence[str]) -> Path:
+    """Where the results go: never where the recording is, nor over it by another name.
+
+    Args:
+        out: As the user has it.
+        path: The recording.
+        what: Is done with it.
+        targets: Names of the files that are written.
+    """
     name = path.resolve().parent.name if path.name == RECORDING else path.stem
-    folder = make_folder(out, scene_name=f"{name}-{what}.mcap", first_file="summary.json")
-    if folder.resolve() == path.resolve().parent:
+    if out is not None and Path(out).resolve() == path.resolve().parent:
         raise UsageError(f"--out {out} is the folder of the recording itself")
-    return folder
+    for target in (Path(out) / target for target in targets if out is not None):
+        if target.exists() and target.samefile(path):
+            raise UsageError(f"--out {out}: {target} is the recording itself")
+    return make_folder(out, scene_name=f"{name}-{what}.mcap", first_file=targets[0])
 
 
 def _tell(told: Iterator[Event], sinks: list[Sink], stopwatch: Stopwatch) -> int:
@@ -142,7 +160,7 @@ def _tell(told: Iterator[Event], sinks: list[Sink], stopwatch: Stopwatch) -> int
         return INTERRUPTED
     except UsageError as error:
         return _bad(error)
-    except MissionError as error:
+    except (MissionError, DetectorError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return FAILED
     return DONE

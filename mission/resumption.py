@@ -15,6 +15,7 @@ import numpy as np
 
 from mission.errors import UsageError
 from mission.events import Event, MissionFinished, MissionStarted, Photographed, Registered, Scanned
+from mission.order import Order
 from mission.recording.kinds import EVENTS
 from mission.recording.mcap_reader import DamagedError, read_events
 from mission.rigid import Pose
@@ -58,37 +59,61 @@ class Earlier:
         return event.photos
 
 
-def set_aside(folder: Path) -> Path | None:
+def set_aside(folder: Path, order: Order, scene_xml: str) -> Path | None:
     """Rename the recordings of an interrupted mission, so that they are not lost.
 
+    Args:
+        folder: Of the mission.
+        order: What was asked for: recordings of anything else are left alone.
+        scene_xml: The scene as it is now.
+
     Returns:
-        Of all that were ever set aside, the MCAP with the most scans.
+        Of all that were ever set aside, the MCAP with the most scans; None if there is none.
+
+    Raises:
+        UsageError: The scene has changed since; then nothing is renamed.
     """
+    first = _start(folder / RECORDINGS[0])
+    if first is not None and _is_of(first, order) and first.scene_xml != scene_xml:
+        raise UsageError(f"the scene has changed since, so the mission cannot go on: {first.scene}")
     number = next(n for n in count(1) if not any(_aside(folder, name, n).exists() for name in RECORDINGS))
     for name in RECORDINGS:
         if (folder / name).exists():
             (folder / name).rename(_aside(folder, name, number))
     kept = [_aside(folder, RECORDINGS[0], n) for n in range(1, number + 1)]
-    return max((path for path in kept if path.exists()), key=_scans, default=None)
+    starts = {path: _start(path) for path in kept}
+    own = [path for path, start in starts.items() if start and _is_of(start, order) and start.scene_xml == scene_xml]
+    return max(own, key=_scans, default=None)
 
 
-def is_complete(folder: Path) -> bool:
-    """Whether the mission came to its end and nothing is missing."""
+def forget(folder: Path) -> None:
+    """Remove what earlier missions into the same folder have set aside: theirs are replaced, too."""
+    for name in RECORDINGS:
+        stem, _, suffix = name.partition(".")
+        for path in folder.glob(f"{stem}.interrupted-*.{suffix}"):
+            path.unlink()
+
+
+def is_complete(folder: Path, order: Order) -> bool:
+    """Whether the mission that was asked for came to its end and nothing is missing."""
     if not all((folder / name).exists() for name in (*RECORDINGS, *RESULTS)):
+        return False
+    first = _start(folder / RECORDINGS[0])
+    if first is None or not _is_of(first, order):
         return False
     last = next(_readable(folder / RECORDINGS[0], MissionFinished), None)
     return isinstance(last, MissionFinished) and last.outcome == "completed"
 
 
-def check_scene(recording: Path | None, scene_xml: str) -> None:
-    """See that a scene is still what it was.
+def _start(recording: Path) -> MissionStarted | None:
+    """How a recording begins; None if nobody can tell."""
+    first = next(_readable(recording, MissionStarted), None) if recording.exists() else None
+    return first if isinstance(first, MissionStarted) else None
 
-    Raises:
-        UsageError: It has changed since.
-    """
-    first = next(_readable(recording, MissionStarted), None) if recording else None
-    if isinstance(first, MissionStarted) and first.scene_xml != scene_xml:
-        raise UsageError(f"the scene has changed since, so the mission cannot go on: {first.scene}")
+
+def _is_of(started: MissionStarted, order: Order) -> bool:
+    """Whether a mission is the one that was asked for, as far as its start tells."""
+    return started.seed == order.seed and started.config == order.config.model_dump(mode="json")
 
 
 def _aside(folder: Path, name: str, number: int) -> Path:

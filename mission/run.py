@@ -29,7 +29,7 @@ from mission.order import Order, read_order, write_order
 from mission.progress import TerminalProgress
 from mission.recording.cost import recording_cost
 from mission.report import Report, write_json
-from mission.resumption import Earlier, check_scene, is_complete, set_aside
+from mission.resumption import Earlier, forget, is_complete, set_aside
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
 from sim.errors import SimError
@@ -59,32 +59,37 @@ def run(options: argparse.Namespace) -> int:
         _check_metrics(bars)
         folder = _begun_folder(options)
         order = read_order(folder) if folder else _order(options)
-        if folder and is_complete(folder):
+        if folder and is_complete(folder, order):
             console.print(f"the mission is complete, there is nothing to go on with: {folder}", soft_wrap=True)
-            return DONE
+            return _results(folder, bars, as_json=options.json)
         streams = live_streams(view=options.view, connect=options.connect, serve=options.serve)
         if options.serve is not None:
             console.print(f"watch the mission:  rerun {address(options.serve)}", highlight=False, soft_wrap=True)
         scene = _scene(order)
-        recording = set_aside(folder) if folder else None
-        check_scene(recording, scene.xml)
+        recording = set_aside(folder, order, scene.xml) if folder else None
         progress = TerminalProgress(console)
         stopwatch = Stopwatch(progress.stage)
         earlier = Earlier(recording)
         with Mission(scene, order.config, seed=order.seed, stopwatch=stopwatch, earlier=earlier) as mission:
-            folder = folder or make_folder(options.out, scene_name=options.scene)
-            write_order(folder, order)
-            report, status = carry_out(
-                mission, folder, progress=progress, stopwatch=stopwatch, start=start, streams=streams
-            )
+            if folder is None:
+                folder = make_folder(options.out, scene_name=options.scene)
+                forget(folder)
+                write_order(folder, order)
+            _, status = carry_out(mission, folder, progress=progress, stopwatch=stopwatch, start=start, streams=streams)
     except (SimError, MissionError) as error:
         print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
         return BAD_INPUT
-    if options.json:
-        summary = json.loads((folder / "summary.json").read_text())
-        print(json.dumps({"doors": report.doors(), "summary": summary}, indent=2))
+    judged = _results(folder, bars, as_json=options.json)
     console.print(f"open the recording:  rerun {folder / 'mission.rrd'}", highlight=False, soft_wrap=True)
-    return status or _judge(report, bars)
+    return status or judged
+
+
+def _results(folder: Path, bars: Mapping[str, float], *, as_json: bool) -> int:
+    """Print the results in a folder if they are asked for, and compare them with the bars."""
+    doors, summary = (json.loads((folder / name).read_text()) for name in ("doors.json", "summary.json"))
+    if as_json:
+        print(json.dumps({"doors": doors, "summary": summary}, indent=2))
+    return _judge(summary["metrics"], bars)
 
 
 def carry_out(
@@ -275,9 +280,8 @@ def _check_metrics(bars: Mapping[str, float]) -> None:
             raise UsageError(f"--fail-under {name}={bar:g}: expected a share from 0 to 1")
 
 
-def _judge(report: Report, bars: Mapping[str, float]) -> int:
+def _judge(metrics: Mapping[str, float | None], bars: Mapping[str, float]) -> int:
     """Compare with the bars; a missed door counts as recall 0, a false positive as precision 0, no door as nothing."""
-    metrics = report.metrics()
     found, false_positives = metrics["found"] or 0, metrics["false_positives"] or 0
     values = {
         "recall": _over(metrics["recall"], found, metrics["doors"]),

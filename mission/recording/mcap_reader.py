@@ -16,7 +16,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 
 from detector.room import View
 from mission.colouring import colour_scan
-from mission.errors import UsageError
+from mission.errors import MissionError, UsageError
 from mission.events import Event, Photographed, Registered, Scanned
 from mission.recording.codec import decode
 from mission.recording.kinds import DERIVED, PARTS, RecordType
@@ -103,7 +103,7 @@ def _records(file: IO[bytes], path: Path) -> Iterator[McapRecord]:
 
 def _check_profile(profile: str, path: Path) -> None:
     version = profile.removeprefix(PROFILE)
-    if not profile.startswith(PROFILE) or not version.isdecimal():
+    if not profile.startswith(PROFILE) or not version.isdecimal() or len(version) > 9:
         raise UsageError(f"an MCAP file, but no recording of a mission (its profile is {profile!r}): {path}")
     if int(version) > FORMAT:
         raise UsageError(f"written by a newer version (format {version}, this one reads up to {FORMAT}): {path}")
@@ -187,7 +187,7 @@ class _Decoder:
     def _decoded(self, kind: RecordType, content: Any, **others: Any) -> Any:
         try:
             return decode(kind, content, **others)
-        except (AttributeError, TypeError, ValueError, RecursionError) as error:  # a field that is something else
+        except (AttributeError, TypeError, ValueError, LookupError, ArithmeticError, RecursionError) as error:
             raise UsageError(f"{self._path}: {kind.__name__} was recorded by another version ({error})") from error
         except UsageError as error:
             raise UsageError(f"{self._path}: {error}") from error
@@ -205,7 +205,10 @@ class _Decoder:
         scan, photos, pose = (self._measured.get(kind) for kind in (Scanned, Photographed, Registered))
         if not (scan and photos and pose) or not scan.scan_number == photos.scan_number == pose.scan_number == number:
             raise UsageError(f"{self._path} lacks what scan {number} was coloured from")
-        return colour_scan(scan.scan, photos.photos, pose.world_from_scanner)
+        try:
+            return colour_scan(scan.scan, photos.photos, pose.world_from_scanner)
+        except (ValueError, LookupError, ArithmeticError, MissionError) as error:  # shapes that do not fit each other
+            raise UsageError(f"{self._path}: scan {number} cannot be coloured ({error})") from error
 
 
 def _fault(error: BaseException) -> str:

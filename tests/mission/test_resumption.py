@@ -8,6 +8,7 @@ import random
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,11 @@ import pytest
 from mission.__main__ import main
 from mission.config import MissionConfig
 from mission.errors import UsageError
-from mission.events import Event, MissionFinished, Photographed, Scanned
+from mission.events import Event, MissionFinished, MissionStarted, Photographed, Scanned
 from mission.order import FILE, Order, read_order, write_order
 from mission.recording.mcap_reader import DamagedError, read_events
 from mission.recording.mcap_sink import McapSink
-from mission.resumption import Earlier, check_scene, is_complete, set_aside
+from mission.resumption import Earlier, forget, is_complete, set_aside
 from tests.mission.recording_story import story
 from tests.mission.rerun_file import RERUN
 
@@ -79,33 +80,54 @@ def test_from_another_place_a_scan_is_taken_anew_and_so_is_all_that_follows(tmp_
     assert earlier.scan(second) is None
 
 
+ASKED = order(Path("room.xml"))
+
+
+def carried_out(asked: Order = ASKED) -> list[Event]:
+    """The story as the mission that was asked for."""
+    first, *others = story()
+    assert isinstance(first, MissionStarted)
+    config = asked.config.model_dump(mode="json")
+    return [replace(first, seed=asked.seed, config=config, scene_xml="<mujoco/>"), *others]
+
+
 def test_of_all_interrupted_recordings_none_is_lost_and_the_longest_serves(tmp_path: Path) -> None:
-    told = story()
+    told = carried_out()
     for events in (told, told[:4]):  # killed again, earlier than the first time
         record(tmp_path / "mission.mcap", events)
         (tmp_path / "mission.rrd").write_bytes(b"RRF2")
-        serves = set_aside(tmp_path)
+        serves = set_aside(tmp_path, ASKED, "<mujoco/>")
     assert serves == tmp_path / "mission.interrupted-1.mcap"
     names = {f"mission.interrupted-{n}.{suffix}" for n in (1, 2) for suffix in ("mcap", "rrd")}
     assert {path.name for path in tmp_path.iterdir()} == names
+    forget(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_recording_of_another_mission_does_not_serve(tmp_path: Path) -> None:
+    record(tmp_path / "mission.mcap", carried_out(replace(ASKED, seed=8)))
+    assert set_aside(tmp_path, ASKED, "<mujoco/>") is None
+    record(tmp_path / "mission.mcap", carried_out(replace(ASKED, config=MissionConfig())))
+    assert set_aside(tmp_path, ASKED, "<mujoco/>") is None
 
 
 def test_only_a_mission_that_came_to_its_end_is_complete(tmp_path: Path) -> None:
-    record(tmp_path / "mission.mcap", story())
+    record(tmp_path / "mission.mcap", carried_out())
     (tmp_path / "mission.rrd").touch()
-    assert not is_complete(tmp_path)  # killed before its results were written
+    assert not is_complete(tmp_path, ASKED)  # killed before its results were written
     for name in ("doors.json", "summary.json"):
         (tmp_path / name).touch()
-    assert is_complete(tmp_path)
-    record(tmp_path / "mission.mcap", [event for event in story() if not isinstance(event, MissionFinished)])
-    assert not is_complete(tmp_path)
+    assert is_complete(tmp_path, ASKED)
+    assert not is_complete(tmp_path, replace(ASKED, seed=8))
+    record(tmp_path / "mission.mcap", [event for event in carried_out() if not isinstance(event, MissionFinished)])
+    assert not is_complete(tmp_path, ASKED)
 
 
-def test_a_scene_that_changed_since_is_refused(tmp_path: Path) -> None:
-    recording = record(tmp_path / "m.mcap", story()[:2])
-    check_scene(recording, "<mujoco/>")
+def test_a_scene_that_changed_since_is_refused_before_anything_is_renamed(tmp_path: Path) -> None:
+    recording = record(tmp_path / "mission.mcap", carried_out()[:2])
     with pytest.raises(UsageError, match="the scene has changed"):
-        check_scene(recording, "<mujoco model='other'/>")
+        set_aside(tmp_path, ASKED, "<mujoco model='other'/>")
+    assert [*tmp_path.iterdir()] == [recording]
 
 
 @pytest.mark.parametrize(

@@ -107,7 +107,7 @@ def report(found: int, missed: int, false_positives: int) -> Report:
     ],
 )
 def test_the_bar_counts_missed_doors_and_false_positives(made: Report, bars: dict[str, float], status: int) -> None:
-    assert run._judge(made, bars) == status
+    assert run._judge(made.metrics(), bars) == status
 
 
 def test_each_run_gets_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
