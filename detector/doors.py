@@ -42,6 +42,8 @@ CLEAR_SUPPORT = 0.8
 """Support of every side of an outline that cuts a rectangle out of a wall of its own colour."""
 CLEAR_FOOT = 0.6
 """Likewise of each foot: a skirting or a threshold takes a hand's breadth of it."""
+MOSTLY_SEEN = 0.6
+"""Share of a door of faint outline that shows at least: the shadows of a shelf are a faint outline round it, too."""
 MAX_OVERSHOOT = 0.5
 ENDS = 0.2
 """The head of a door of boards among boards is all there is to tell it from them: it must end, within this."""
@@ -137,13 +139,16 @@ def judge(
     support, feet, corners = side_support(boxes, scene)
     wall, visible, through = inner_shares(boxes, scene)
     around = surroundings(boxes, scene)
-    alone = _stand_alone(boxes, support, feet, wall > parameters.alpha3, scene)
+    in_wall = wall > parameters.alpha3
+    alone = _stand_alone(boxes, support, feet, in_wall, scene)
+    if faint:
+        alone &= visible > MOSTLY_SEEN
     least_visible = np.where(through < OPEN_SHARE, parameters.min_visible_closed, parameters.min_visible)
     reasons = np.full(len(boxes), None, object)
     checks = (
         ("door frame occlusion", support.min(axis=1) < parameters.alpha2),
         ("corners", corners.min(axis=1) < CORNER_SUPPORT),
-        ("location consistency", ((wall > parameters.alpha3) | faint) & ~alone),
+        ("location consistency", (in_wall | faint) & ~alone),
         ("panel occlusion", visible < least_visible),
         ("floor", feet.min(axis=1) < FOOT_SUPPORT),
         ("surroundings", around.min(axis=1) < FAIRLY_SET),
