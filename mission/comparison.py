@@ -40,8 +40,8 @@ def doors_compared(first: Report, second: Report, one: str, other: str) -> Table
 
 
 def doors_differ(first: Report, second: Report) -> bool:
-    """Whether any door is not quite the same."""
-    return first.doors()["rooms"] != second.doors()["rooms"]
+    """Whether any door, or what links two of them, is not quite the same."""
+    return any(first.doors()[part] != second.doors()[part] for part in ("rooms", "links"))
 
 
 def differences(first: Report, second: Report) -> list[Row]:
@@ -74,6 +74,8 @@ def _figures(report: Report, summary: Mapping[str, Any]) -> dict[str, Any]:
         scans = sum(event.room == room["id"] for event in report.registrations)
         here = {"scans": scans, "coverage": room["coverage"], "done": room["done"], "stop": room["stop_reason"]}
         figures |= {f"room {room['id']}: {name}": value for name, value in here.items()}
+        figures[f"room {room['id']}: exits"] = ", ".join(room["exits"]) or "none"
+    figures["doors from both sides"] = ", ".join(" = ".join(link.doors) for link in report.links if link.doors)
     for scan in summary["registration"]:
         figures[f"scan {scan['scan']}: error of its pose [m]"] = scan["translation_error_m"]
     return figures

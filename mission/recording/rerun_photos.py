@@ -88,7 +88,8 @@ class Photos:
         shots = [shot(photo, event.room, event.world_from_scanner, frame) for photo in self._fresh]
         for first in shots[:1]:
             self._show(entities.CAMERA, first)
-        self._shots += shots
+        if event.accepted:  # of another scan nobody knows where it was
+            self._shots += shots
         self._fresh = []
 
     @draw.register

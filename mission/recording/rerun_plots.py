@@ -59,7 +59,7 @@ class Plots:
         """Draw into a recording."""
         self._rec = rec
         self._true_doors: tuple[DoorTruth, ...] = ()
-        self._evaluations: list[DoorEvaluation] = []
+        self._evaluations: dict[str, DoorEvaluation] = {}
         self._joints: dict[str, float] = {}
         self._styled: set[str] = set()
 
@@ -99,10 +99,11 @@ class Plots:
 
     @_plot.register
     def _(self, event: DoorsEvaluated) -> None:
-        self._evaluations += event.doors
-        for number, evaluation in enumerate(event.doors, start=len(self._evaluations) - len(event.doors)):
+        self._evaluations |= {evaluation.door_id: evaluation for evaluation in event.doors}
+        for evaluation in event.doors:
             if evaluation.true_name is not None:
-                self._style_joint(evaluation.true_name, palette(number))
+                colour = palette(list(self._evaluations).index(evaluation.door_id))
+                self._style_joint(evaluation.true_name, colour)
             lane = child(entities.DOOR_STATES, evaluation.door_id)
             self._rec.log(lane, _lane(DOOR_COLOURS), static=True)
             self._rec.log(lane, rr.StateChange(state=evaluation.door.state))
@@ -127,7 +128,7 @@ class Plots:
     def _plot_estimates(self) -> None:
         """Estimates, and the joints once more, for a line to end beside them."""
         self._plot_joints(self._joints)
-        for number, evaluation in enumerate(self._evaluations):
+        for number, evaluation in enumerate(self._evaluations.values()):
             angle = evaluation.door.opening_angle
             if np.isfinite(angle):
                 variance = np.degrees(np.nan_to_num(evaluation.opening_angle_std)) ** 2

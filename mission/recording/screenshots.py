@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import re
 import socket
 import subprocess
 import sys
@@ -100,7 +101,7 @@ def screenshots(
                 raise ScreenshotError(f"no tab {name!r}; there are: {', '.join(tabs)}")
             _root(layout)["active_tab"] = tabs[name]
             viewer.set_blueprint(layout, of="recording")
-            path = out / f"{name.lower().replace(' ', '-')}.png"
+            path = out / f"{re.sub(r'[^a-z0-9.]+', '-', name.lower()).strip('.-')}.png"
             _save(_settled(viewer), path)
             print(path)
             views = viewer.get_state().views

@@ -72,11 +72,12 @@ def bench_recording(options: argparse.Namespace) -> int:
         with Mission(scene, config, seed=options.seed, stopwatch=stopwatch) as mission:
             folder = make_folder(options.out, scene_name="bench-recording", first_file="result.json")
             report, status = carry_out(mission, folder, progress=progress, stopwatch=stopwatch, start=start)
-        if not report.registrations:
+        scans = sum(room.scans for room in report.rooms.values())
+        if status or not scans:
             return status or BAD_INPUT
         share = stopwatch.seconds.get("recording", 0.0) / (perf_counter() - start)
         log.print("reading the recording back", highlight=False)
-        cost = measure(folder, scans=sum(room.scans for room in report.rooms.values()), share=share)
+        cost = measure(folder, scans=scans, share=share)
     except (SimError, MissionError, OSError) as error:
         print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
         return BAD_INPUT

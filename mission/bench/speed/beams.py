@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mission.bench.speed import rivals
 from mission.bench.speed.timing import Timing, in_turns
 from mission.bench.speed.worlds import World
+from sim.echo import MIN_RANGE
 from sim.panorama import bare_renders, directions
 from sim.scanner import PATTERNS, Pattern, Scanner, ScannerParameters
 
@@ -20,6 +21,7 @@ SAMPLED = 100
 CHECKED = 20_000
 """Beams that are compared with exact rays."""
 OURS, FLOOR = "door-mission", "six bare depth renders"
+EMBREE, MULTI_RAY, MUJOCO_LIDAR = "Open3D RaycastingScene", "mj_multiRay", "mujoco-lidar, CPU"
 
 
 @dataclass(frozen=True)
@@ -49,15 +51,15 @@ def compare_casters(world: World, repeats: int) -> list[Caster]:
     )
     few = np.random.default_rng(0).choice(len(elevations), len(elevations) // SAMPLED, replace=False)
     beams, turn = directions(elevations[few], azimuths[few]), world.world_from_scanner[:3, :3]
-    slow: dict[str, Callable[[], object]] = {"mj_multiRay": rivals.multi_ray(world, beams @ turn.T)}
+    slow: dict[str, Callable[[], object]] = {MULTI_RAY: rivals.multi_ray(world, beams @ turn.T)}
     if rivals.has_mujoco_lidar():
-        slow["mujoco-lidar, CPU"] = rivals.mujoco_lidar(world, elevations[few], azimuths[few])
+        slow[MUJOCO_LIDAR] = rivals.mujoco_lidar(world, elevations[few], azimuths[few])
     fast: dict[str, Callable[[], object]] = {FLOOR: _floor(world, pattern), OURS: _scan(world)}
     if rivals.has_open3d():
         rays = (directions(elevations, azimuths) @ turn.T).astype(np.float32)
         tried = {chunk: rivals.embree(world, rays, chunk) for chunk in rivals.CHUNKS}
         times = in_turns({str(chunk): cast for chunk, cast in tried.items()}, 1)
-        fast["Open3D RaycastingScene"] = tried[min(tried, key=lambda chunk: times[str(chunk)].median)]
+        fast[EMBREE] = tried[min(tried, key=lambda chunk: times[str(chunk)].median)]
     timings = in_turns({**fast, **slow}, repeats)
     errors = _errors(world, pattern)
     casters = []
@@ -89,11 +91,12 @@ def _errors(world: World, pattern: Pattern) -> dict[str, tuple[float, int]]:
     scan = scanner.scan(world.data, world.world_from_scanner, np.random.default_rng(0))
     errors = {OURS: _judge(scan.ranges[rows, columns], true)}
     if rivals.has_open3d():
-        errors["Open3D RaycastingScene"] = _judge(rivals.embree(world, beams, len(beams))()[0], true)
+        errors[EMBREE] = _judge(rivals.embree(world, beams, len(beams))()[0], true)
     return errors
 
 
 def _judge(ranges: NDArray[np.floating], true: NDArray[np.floating]) -> tuple[float, int]:
-    both = np.isfinite(ranges) & np.isfinite(true)
-    off = np.abs(ranges[both] - true[both])
+    """Shares of the beams that an exact ray has a return of within the scanner's reach; a beam without one is off."""
+    measurable = np.isfinite(true) & (true > MIN_RANGE)
+    off = np.abs(np.where(np.isfinite(ranges), ranges, np.inf)[measurable] - true[measurable])
     return float((off < 5e-5).mean()), int(round((off > 0.01).mean() * 10_000))

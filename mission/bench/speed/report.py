@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -121,10 +121,26 @@ class SpeedReport:
         return BenchTable("Missions", ("scene", "seconds", "", ""), tuple(rows))
 
     def result(self) -> dict[str, Any]:
-        """The content of result.json."""
+        """The content of result.json: flat ratios, each None if it was not measured, then all that is behind them."""
         times = self.detector
+        groups: list[list[Caster]] = [*self.casters.values(), [], []]
+        room, clutter = groups[:2]
+        mission = self.missions[0] if self.missions else None
+        help_time = self.start_up.get("--help")
         return {
             "bench": "speed",
+            "scan_over_floor": _ratio(room, beams.FLOOR, beams.OURS),
+            "scan_vs_embree_cluttered": _ratio(clutter, beams.OURS, beams.EMBREE),
+            "scan_vs_multiray_cluttered": _ratio(clutter, beams.OURS, beams.MULTI_RAY),
+            "scan_vs_mujoco_lidar_cluttered": _ratio(clutter, beams.OURS, beams.MUJOCO_LIDAR),
+            "photo_over_floor": self.photographs[photographs.OURS].median / self.photographs[photographs.FLOOR].median
+            if self.photographs
+            else None,
+            "mission_over_floor": mission.seconds / mission.bare_renders if mission and mission.bare_renders else None,
+            "detector_ms_per_m2": 1000 * times.by_views[4].median / times.area if times else None,
+            "detector_exponent": max(times.views_exponent, times.area_exponent) if times else None,
+            "peak_bytes": mission.peak_memory if mission else None,
+            "help_s": help_time.median if help_time else None,
             "repeats": self.repeats,
             "scans": {
                 world: {
@@ -183,6 +199,12 @@ def _picture(casters: dict[str, list[Caster]]) -> Chart:
         ]
         chart.line(values, colour=COLOURS[number % len(COLOURS)], label=name)
     return chart
+
+
+def _ratio(casters: Sequence[Caster], one: str, other: str) -> float | None:
+    """How many times as many beams a second the one method casts as the other."""
+    speeds = {caster.name: caster.beams_per_second for caster in casters}
+    return speeds[one] / speeds[other] if one in speeds and other in speeds else None
 
 
 def _percent(share: float) -> str:

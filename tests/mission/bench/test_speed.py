@@ -92,6 +92,8 @@ def test_tables_and_result_tell_what_was_measured(report: SpeedReport, tmp_path:
     write_report(tmp_path, report)
     result = json.loads((tmp_path / "result.json").read_text())
     assert result["scans"]["hall"][OURS]["beams_per_second"] == 5e6
+    assert result["mission_over_floor"] == 2.0 and result["help_s"] == 0.2 and result["peak_bytes"] == 10**9
+    assert result["scan_vs_embree_cluttered"] is None and result["detector_exponent"] is None, "not measured"
     text = (tmp_path / "tables.md").read_text()
     assert "| rays | hall | 8.00 | +-0% | 1.25 | 4.00 x |" in text, "ours is four times as fast"
     assert "| room.xml, draft | 30.0 | 2.00 x bare renders | 1.00 GB |" in text
