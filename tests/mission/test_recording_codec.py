@@ -56,6 +56,13 @@ def test_whole_multiples_take_few_bytes() -> None:
     assert len(pack(QUARTERS * 10, steps=4.0).data) == 4 * QUARTERS.size  # up to 90,000
 
 
+def test_a_byte_that_one_block_alone_needs_is_kept() -> None:
+    for place in range(0, 2000, 100):  # blocks are worked on side by side
+        array = np.zeros((2000, 1000), np.int32)
+        array[place, 500] = 1 << 30
+        np.testing.assert_array_equal(unpack(pack(array)), array)
+
+
 @pytest.mark.parametrize(
     "change",
     [
