@@ -8,7 +8,7 @@ import json
 import logging
 import math
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
@@ -23,14 +23,13 @@ from mission.errors import MissionError, UsageError
 from mission.events import Event
 from mission.folders import BAD_INPUT, BELOW, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder
 from mission.interrupts import Interrupts
-from mission.memory import release_freed_memory
 from mission.mission import Mission
 from mission.order import Order, read_order, write_order
 from mission.progress import TerminalProgress
 from mission.recording.cost import recording_cost
 from mission.report import Report, write_json
 from mission.resumption import Earlier, forget, is_complete, set_aside
-from mission.sink import Sink
+from mission.sink import SideBySide, Sink
 from mission.stopwatch import Stopwatch
 from sim.errors import SimError
 from sim.obstacles import Obstacle
@@ -142,8 +141,9 @@ def _write_reports(folder: Path, report: Report, stopwatch: Stopwatch, start: fl
 def _pump(mission: Mission, sinks: list[Sink], interrupts: Interrupts, stopwatch: Stopwatch) -> int:
     """Hand every event to every sink; end the stream properly if the mission is stopped or something breaks."""
     try:
-        for event in _events(mission, interrupts):
-            _hand_out(event, sinks, stopwatch)
+        with SideBySide(sinks, stopwatch) as recording:
+            for event in _events(mission, interrupts):
+                recording.hand(event)
         return DONE
     except KeyboardInterrupt:
         last, status = mission.finished("interrupted", "stopped by the user"), INTERRUPTED
@@ -155,7 +155,7 @@ def _pump(mission: Mission, sinks: list[Sink], interrupts: Interrupts, stopwatch
         last, status = mission.finished("failed", f"{type(error).__name__}: {error}"), FAILED
     for sink in sinks:
         try:
-            _hand_out(last, [sink], stopwatch)
+            sink.handle(last)
         except Exception as error:  # the sink that broke the mission may break again; the others must end well
             print(f"error: {type(sink).__name__} cannot record the end: {error}", file=sys.stderr)
     return status
@@ -170,13 +170,6 @@ def _events(mission: Mission, interrupts: Interrupts) -> Iterator[Event]:
         if event is None:
             return
         yield event
-
-
-def _hand_out(event: Event, sinks: Iterable[Sink], stopwatch: Stopwatch) -> None:
-    with stopwatch("recording"):
-        for sink in sinks:
-            sink.handle(event)
-    release_freed_memory()
 
 
 def find_scene(scene: str) -> Path:

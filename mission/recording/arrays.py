@@ -16,10 +16,12 @@ from mission.errors import UsageError
 
 SMALL = 1024
 """Arrays of fewer values are kept as they are."""
-NOTHING = -(1 << 15)
-"""Stands for NaN among whole multiples; an array that has it as a value is kept as it is."""
 _BLOCK = 1 << 17
 """Values worked on at a time, so that they stay in the processor's cache."""
+EXACT = 1 << 24
+"""Up to here float32 holds every whole number."""
+WHOLE = ("<i2", "<u2", "<i4")
+"""Types of whole multiples."""
 KINDS = "biuf"
 """What arrays may hold: truth values, whole numbers, floating point numbers (`numpy.dtype.kind`)."""
 
@@ -33,9 +35,11 @@ class PackedArray:
     shape: tuple[int, ...]
     steps: float
     """Values are whole multiples of 1 / steps, and kept as such; 0 where they are not."""
+    whole: str
+    """Type of the whole numbers, one of `WHOLE`; empty where `steps` is 0. The last of its numbers stands for NaN."""
     planes: int
-    """How many bytes of each value are kept, lowest first, all values' first bytes before the second ones; of whole
-    multiples 2 or 4, the width of their numbers; 0 for an array that is kept as it is, truth values as bits."""
+    """How many bytes of each value are kept, lowest first, all values' first bytes before the second ones; 0 for an
+    array that is kept as it is, truth values as bits."""
     data: bytes
 
 
@@ -53,22 +57,19 @@ def pack(array: NDArray[Any], *, steps: float = 0.0) -> PackedArray:
     shape = np.shape(array)
     array = np.ascontiguousarray(array, name)
     if array.dtype.kind == "b":
-        return PackedArray(name, shape, 0.0, 0, np.packbits(array.view(np.uint8)).tobytes())
+        return PackedArray(name, shape, 0.0, "", 0, np.packbits(array.view(np.uint8)).tobytes())
     if array.size < SMALL:
-        return PackedArray(name, shape, 0.0, 0, array.tobytes())
+        return PackedArray(name, shape, 0.0, "", 0, array.tobytes())
     rows = array.reshape(1, -1) if array.ndim == 1 else array
-    if array.dtype.kind != "f":
-        planes = _planes(rows, _differences)
-    elif steps and array.itemsize == 4:
-        largest = max(-float(np.fmin.reduce(array, axis=None)), float(np.fmax.reduce(array, axis=None))) * steps
-        width = np.dtype("<i4" if largest >= -NOTHING else "<i2")
+    if steps and name == "<f4":
         try:
-            planes = _planes(rows, lambda block: _differences(_whole(block, steps, width)), width.itemsize)
+            whole = _width(rows, steps)
+            planes = _planes(rows, lambda block: _differences(_whole(block, steps, whole)), whole.itemsize)
+            return PackedArray(name, shape, steps, whole.str, len(planes), planes.tobytes())
         except _NotWholeError:
             return pack(array)
-    else:
-        planes = _planes(rows, lambda block: block)
-    return PackedArray(name, shape, steps if name == "<f4" else 0.0, len(planes), planes.tobytes())
+    planes = _planes(rows, (lambda block: block) if array.dtype.kind == "f" else _differences, array.itemsize)
+    return PackedArray(name, shape, 0.0, "", len(planes), planes.tobytes())
 
 
 def unpack(packed: PackedArray) -> NDArray[Any]:
@@ -81,8 +82,10 @@ def unpack(packed: PackedArray) -> NDArray[Any]:
     count = math.prod(packed.shape)
     bits = 1 if dtype.kind == "b" else 8 * (packed.planes or dtype.itemsize)
     sound = min(packed.shape, default=0) >= 0 and len(packed.data) == (count * bits + 7) // 8
-    if packed.steps and (packed.dtype != "<f4" or packed.planes not in (2, 4)):
-        sound = False
+    if packed.steps:
+        sound &= (
+            packed.dtype == "<f4" and packed.whole in WHOLE and 0 < packed.planes <= np.dtype(packed.whole).itemsize
+        )
     if not sound or packed.planes not in range(dtype.itemsize + 1) or (packed.planes and not count):
         raise UsageError(f"{len(packed.data)} bytes are no array of {packed.dtype} and shape {list(packed.shape)}")
     raw = np.frombuffer(packed.data, np.uint8)
@@ -93,7 +96,7 @@ def unpack(packed: PackedArray) -> NDArray[Any]:
     values = np.empty(packed.shape, dtype)
     rows = values.reshape(1, -1) if values.ndim == 1 else values
     planes = raw.reshape(packed.planes, *rows.shape)
-    _each_block(rows, lambda block: _unpack_block(planes[:, block], rows[block], packed.steps))
+    _each_block(rows, lambda block: _unpack_block(planes[:, block], rows[block], packed))
     return values
 
 
@@ -119,22 +122,16 @@ def _each_block(rows: NDArray[np.generic], work: Callable[[slice], object]) -> N
         list(pool.map(work, blocks))
 
 
-def _planes(
-    rows: NDArray[Any], change: Callable[[NDArray[Any]], NDArray[Any]], size: int | None = None
-) -> NDArray[np.uint8]:
-    """(P, ...) lowest bytes of all changed values, then the next ones.
-
-    With a size [bytes], which says what the values were changed into, all of them; else to the last that is not zero.
-    """
-    width = size or rows.itemsize
-    planes = np.empty((width, *rows.shape), np.uint8)
-    used = np.full(width, size is not None)
+def _planes(rows: NDArray[Any], change: Callable[[NDArray[Any]], NDArray[Any]], size: int) -> NDArray[np.uint8]:
+    """(P, ...) lowest bytes of all values, changed to a size [bytes], then the next ones, to the last that is not 0."""
+    planes = np.empty((size, *rows.shape), np.uint8)
+    used = np.zeros(size, bool)
     used[0] = True
 
     def sort_out(block: slice) -> None:
         values = np.ascontiguousarray(change(rows[block]))
-        sorted_out = values.view(np.uint8).reshape(*values.shape, width)
-        for place in range(width):
+        sorted_out = values.view(np.uint8).reshape(*values.shape, size)
+        for place in range(size):
             planes[place, block] = sorted_out[..., place]
             if not used[place] and planes[place, block].any():  # blocks are worked on side by side: only ever set it
                 used[place] = True
@@ -143,44 +140,55 @@ def _planes(
     return planes[: 1 + int(np.flatnonzero(used)[-1])]
 
 
-def _unpack_block(planes: NDArray[np.uint8], values: NDArray[Any], steps: float) -> None:
+def _unpack_block(planes: NDArray[np.uint8], values: NDArray[Any], packed: PackedArray) -> None:
     """Fill values from their planes."""
-    whole = np.dtype(f"<i{len(planes)}") if steps else values.dtype
-    joined = np.zeros((*values.shape, whole.itemsize), np.uint8)
+    kind = np.dtype(packed.whole) if packed.steps else values.dtype
+    joined = np.zeros((*values.shape, kind.itemsize), np.uint8)
     for place, plane in enumerate(planes):
         joined[..., place] = plane
-    found = joined.view(whole)[..., 0]
-    if whole.kind == "f":
+    found = joined.view(kind)[..., 0]
+    if kind.kind != "f":
+        found = _sums(found)
+    if packed.steps:
+        np.divide(found, values.dtype.type(packed.steps), out=values, dtype=values.dtype, casting="same_kind")
+        values[found == np.iinfo(kind).max] = np.nan
+    else:
         values[:] = found
-        return
-    found = _sums(found)
-    if not steps:
-        values[:] = found
-        return
-    np.divide(found, values.dtype.type(steps), out=values, dtype=values.dtype, casting="same_kind")
-    values[found == NOTHING] = np.nan
 
 
-def _whole(values: NDArray[Any], steps: float, width: np.dtype) -> NDArray[Any]:
-    """Multiples of 1 / steps as whole numbers of a width.
+def _width(values: NDArray[Any], steps: float) -> np.dtype:
+    """The narrowest type of whole numbers that has room for all values, and one more for NaN.
+
+    Raises:
+        _NotWholeError: There is none.
+    """
+    with np.errstate(invalid="ignore"):
+        least, most = float(np.fmin.reduce(values, axis=None)) * steps, float(np.fmax.reduce(values, axis=None)) * steps
+    for name in WHOLE:
+        limits = np.iinfo(name)
+        if not (least < limits.min or most > limits.max - 1) and max(-least, most, 0) < EXACT or np.isnan(least):
+            return np.dtype(name)
+    raise _NotWholeError
+
+
+def _whole(values: NDArray[Any], steps: float, kind: np.dtype) -> NDArray[Any]:
+    """Multiples of 1 / steps as whole numbers of a type, whose last number stands for NaN.
 
     Raises:
         _NotWholeError: They do not give the very same values back.
     """
     scaled = values * values.dtype.type(steps)
     lost = np.isnan(values)
-    scaled[lost] = NOTHING
+    scaled[lost] = 0
     np.rint(scaled, out=scaled)
-    if not max(-float(scaled.min()), float(scaled.max())) < 1 << 24:  # float32 does not hold every whole number beyond
-        raise _NotWholeError
-    whole = scaled.astype(width)
+    whole = scaled.astype(kind)
     scaled /= values.dtype.type(steps)
     bits = f"u{values.itemsize}"  # -0.0 is not 0.0
     same = scaled.view(bits) == values.view(bits)
-    same &= whole != NOTHING
     same |= lost
     if not same.all():
         raise _NotWholeError
+    whole[lost] = np.iinfo(kind).max
     return whole
 
 

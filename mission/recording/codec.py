@@ -56,7 +56,7 @@ def _encoded(value: Any, kind: Kind) -> Any:
             return plain(value)
         case Array(steps=steps):
             packed = pack(value, steps=steps)
-            return {name: getattr(packed, name) for name in ("dtype", "shape", "steps", "planes", "data")}
+            return {name: getattr(packed, name) for name in ("dtype", "shape", "steps", "whole", "planes", "data")}
         case Record(type=record):
             return _encoded_fields(value, fields_of(record))
         case Many(item=item):
@@ -115,7 +115,9 @@ def _single(value: Any, kind: Kind, name: str) -> Any:
                 raise UsageError(f"{name} is {value!r}, which it cannot be")
             return value
         case Array():
-            return unpack(PackedArray(value.dtype, tuple(value.shape), value.steps, value.planes, value.data))
+            return unpack(
+                PackedArray(value.dtype, tuple(value.shape), value.steps, value.whole, value.planes, value.data)
+            )
         case Record(type=record):
             return record(**_decoded_fields(record, value))
         case Group(items=items):

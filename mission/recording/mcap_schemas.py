@@ -116,6 +116,7 @@ _ARRAY_FIELDS: dict[str, Kind] = {
     "dtype": Scalar(str),
     "shape": Many(Scalar(int)),
     "steps": Scalar(float),
+    "whole": Scalar(str),
     "planes": Scalar(int),
     "data": Scalar(bytes),
 }

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+from concurrent.futures import ThreadPoolExecutor
 from functools import singledispatchmethod
 from pathlib import Path
 from types import TracebackType
@@ -52,7 +54,7 @@ if TYPE_CHECKING:
 
 EPOCH = 946_684_800_000_000_000
 """Mission time zero on the clock of the file: 2000-01-01 00:00:00 UTC [ns]. A mission has no date of its own."""
-CLOUD_SPACING, CLOUD_READ = 0.02, 500_000
+CLOUD_SPACING, CLOUD_READ = 0.02, 300_000
 """Of the clouds that viewers show: side of the cells that hold one point each [m], and points that are looked at."""
 PER_STEP = 1_000
 """Added to an event's time for each earlier event [ns]: detection takes no mission time, but has an order."""
@@ -138,13 +140,15 @@ class McapSink:
 
     @_record.register
     def _(self, event: Photographed) -> None:
-        for number, photo in enumerate(event.photos, start=1):
-            frame = f"scan {event.scan_number} photo {number}"
-            parent = f"scan {event.scan_number}"
-            self._log("/tf", self._transforms((parent, frame, photo.scanner_from_camera)))
+        scan = f"scan {event.scan_number}"
+        frames = [f"{scan} photo {number}" for number in range(1, len(event.photos) + 1)]
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            pictures = pool.map(lambda f, p: messages.photograph(self._now, f, p.image), frames, event.photos)
+        for frame, photo, picture in zip(frames, event.photos, pictures, strict=True):
+            self._log("/tf", self._transforms((scan, frame, photo.scanner_from_camera)))
             calibration = messages.calibration(self._now, frame, photo.image, photo.intrinsics)
             self._log("/camera/calibration", calibration)
-            self._log("/camera/image", messages.photograph(self._now, frame, photo.image))
+            self._log("/camera/image", picture)
 
     @_record.register
     def _(self, event: Registered) -> None:

@@ -36,6 +36,7 @@ QUARTERS = np.where(RNG.random((50, 60)) < 0.1, np.nan, RNG.integers(-300, 9000,
         np.where(QUARTERS == 0, np.float32(-0.0), QUARTERS),
         QUARTERS + np.float32(0.1),  # no whole quarters
         QUARTERS * 10,
+        np.abs(QUARTERS) * 5,
         QUARTERS + 2**23,  # beyond what float32 holds of them
         np.full((40, 50), np.nan, np.float32),
         np.zeros((40, 50), np.int32),
@@ -51,7 +52,15 @@ def test_arrays_come_back_to_the_last_bit(array: np.ndarray) -> None:
 
 def test_whole_multiples_take_few_bytes() -> None:
     assert len(pack(QUARTERS, steps=4.0).data) == 2 * QUARTERS.size  # up to 9000 quarters
+    assert len(pack(np.abs(QUARTERS) * 5, steps=4.0).data) == 2 * QUARTERS.size  # up to 45,000, none negative
     assert len(pack(QUARTERS * 10, steps=4.0).data) == 4 * QUARTERS.size  # up to 90,000
+
+
+def test_a_byte_that_one_block_alone_needs_is_kept() -> None:
+    for place in range(0, 2000, 100):  # blocks are worked on side by side
+        array = np.zeros((2000, 1000), np.int32)
+        array[place, 500] = 1 << 30
+        np.testing.assert_array_equal(unpack(pack(array)), array)
 
 
 @pytest.mark.parametrize(
@@ -62,6 +71,8 @@ def test_whole_multiples_take_few_bytes() -> None:
         {"shape": (2**40, 2**40)},
         {"planes": 9},
         {"planes": 1},
+        {"whole": "<f2"},
+        {"whole": ""},
         {"planes": -1},
         {"dtype": "|O"},
         {"dtype": "<M8[s]"},
@@ -77,7 +88,7 @@ def test_bytes_that_make_no_array_are_refused_before_memory_is_taken(change: dic
 
 def test_an_object_cannot_hide_in_an_array() -> None:
     with pytest.raises(UsageError, match="unknown type"):
-        unpack(PackedArray("|O", (1,), 0.0, 0, b"12345678"))
+        unpack(PackedArray("|O", (1,), 0.0, "", 0, b"12345678"))
 
 
 @pytest.mark.parametrize("told", [story(), bare_story()], ids=["story", "bare"])
