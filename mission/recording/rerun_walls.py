@@ -153,7 +153,7 @@ def _draw_candidates(rec: rr.RecordingStream, entity: str, result: WallResult) -
     shown = shown_candidates(result.search.candidates)
     verdicts = [candidate.rejected_by or "accepted" for candidate in shown]
     counts = Counter(verdicts)
-    conditions = sorted(counts.keys() - {"accepted"}, key=lambda verdict: -counts[verdict])
+    conditions = sorted(counts.keys() - {"accepted"}, key=lambda verdict: (-counts[verdict], verdict))
     colours = {"accepted": ACCEPTED} | {name: REJECTED[i % len(REJECTED)] for i, name in enumerate(conditions)}
     _draw_boxes(
         rec,
