@@ -230,5 +230,5 @@ class WallResult:
     search: DoorSearch
     doors: tuple[Door, ...]
     """From left to right."""
-    stage_seconds: tuple[tuple[str, float], ...]
+    stage_seconds: tuple[tuple[str, float], ...] = ()
     """Wall clock time of each stage [s]: for people, not part of the result."""

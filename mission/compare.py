@@ -22,13 +22,14 @@ from mission.report import Report
 def compare(options: argparse.Namespace) -> int:
     """Print what differs, and return 1 if anything does."""
     try:
-        first, second = _report(Path(options.first)), _report(Path(options.second))
+        paths = Path(options.first), Path(options.second)
+        first, second = map(_report, paths)
     except MissionError as error:
         print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
         return BAD_INPUT
     console = Console(width=None if sys.stdout.isatty() else LOG_WIDTH)
     rows = differences(first, second)
-    for title, lines in (("the missions", rows), ("wall clock, no two runs have the same", stage_times(first, second))):
+    for title, lines in (("the missions", rows), ("wall clock, no two runs have the same", stage_times(*paths))):
         if lines:
             table = Table("what", "A", "B", title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
             for line in lines:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -54,11 +56,18 @@ def differences(first: Report, second: Report) -> list[Row]:
     return rows
 
 
-def stage_times(first: Report, second: Report) -> list[Row]:
-    """Wall clock time of each stage, where it differs."""
-    a, b = (dict(r.finished.cost.stage_seconds) if r.finished and r.finished.cost else {} for r in (first, second))
-    one, other = ({name: f"{seconds:.1f} s" for name, seconds in stages.items()} for stages in (a, b))
-    return _changed("", one, other)
+def stage_times(first: Path, second: Path) -> list[Row]:
+    """Wall clock time of each stage, where it differs, of two recordings with their summary.json beside them."""
+    return _changed("", _stage_seconds(first), _stage_seconds(second))
+
+
+def _stage_seconds(recording: Path) -> dict[str, str]:
+    """By the summary beside a recording; empty if there is none that can be read."""
+    try:
+        stages = json.loads((recording.parent / "summary.json").read_text())["stage_seconds"]
+        return {str(name): f"{float(seconds):.1f} s" for name, seconds in stages.items()}
+    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        return {}
 
 
 def _figures(report: Report, summary: Mapping[str, Any]) -> dict[str, Any]:

@@ -52,7 +52,7 @@ class Event:
     room: int = 1
     """Room that the robot is in, from 1."""
     cost: Cost | None = None
-    """Told at the end of each scan, when doors were compared, and at the end of the mission."""
+    """Told at the end of each scan, when doors were compared, and at the end of the mission; not in the MCAP."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

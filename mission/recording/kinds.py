@@ -46,6 +46,9 @@ PARTS = {events.Photographed: "photos", events.DoorsDetected: "results"}
 DERIVED = {events.Coloured: "view"}
 """Fields that are not recorded, for they follow from earlier events."""
 
+WALL_CLOCK = {"cost", "stage_seconds"}
+"""Fields that are not recorded, for no two runs have the same: one mission gives the same bytes."""
+
 STEPS = {(Scan, "ranges"): RANGE_STEPS, (Scan, "reflectance"): REFLECTANCE_STEPS}
 """Arrays whose values are whole multiples of 1 / steps, if the instrument rounds them."""
 
@@ -124,7 +127,7 @@ def fields_of(record: RecordType) -> dict[str, Kind]:
         names: Iterator[str] = (field.name for field in dataclasses.fields(record))
     else:
         names = iter(record._fields)
-    apart = {PARTS.get(record), DERIVED.get(record)}
+    apart = {PARTS.get(record), DERIVED.get(record), *WALL_CLOCK}
     return {name: _kind(hints[name], STEPS.get((record, name), 0.0)) for name in names if name not in apart}
 
 

@@ -64,8 +64,8 @@ class McapSink:
     """Writes every event to an MCAP file as it happens, complete, and beside it what viewers show.
 
     Log times are mission time since `EPOCH` plus a microsecond an event, strictly increasing over the file; timestamps
-    inside messages are mission time since `EPOCH` and no more. Of the machine nothing goes in but how long stages took
-    and how much memory; compression runs on a fixed number of threads, so the same events give the same bytes.
+    inside messages are mission time since `EPOCH` and no more. Nothing of wall clock, host or path goes in, and
+    compression runs on a fixed number of threads, so two runs of one mission give the same bytes.
     """
 
     def __init__(self, path: Path) -> None:

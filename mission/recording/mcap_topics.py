@@ -48,13 +48,13 @@ _EVENTS: dict[type[events.Event], str] = {
     events.DoorsDetected: "heights of floor and ceiling [m]; the walls come before",
     events.DoorsEvaluated: "doors in the map [m, rad] beside the true ones; names of those that were missed",
     events.Remarked: "something worth telling a person",
-    events.MissionFinished: "how the mission ended; wall clock time of each stage [s], memory [bytes]",
+    events.MissionFinished: "how the mission ended",
 }
 _PARTS: dict[type[events.Event], str] = {
     events.Photographed: "a photograph: sRGB, intrinsics [px], pose on the scanner [m]; truth: levels by which the "
     "mirror image of the flash brightens it",
     events.DoorsDetected: "a wall with its doors [m, rad], and every stage of the detector: orthoimages, highlights, "
-    "openings, wall area, candidates; wall clock time of each stage [s]",
+    "openings, wall area, candidates",
 }
 
 

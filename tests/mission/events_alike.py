@@ -1,4 +1,4 @@
-"""Whether two events, or parts of them, hold the same to the last bit."""
+"""Whether two events, or parts of them, hold the same to the last bit, what they took of the machine aside."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import dataclasses
 from typing import Any
 
 import numpy as np
+
+from mission.recording.kinds import WALL_CLOCK
 
 
 def differences(one: Any, other: Any, name: str = "event") -> list[str]:
@@ -17,7 +19,7 @@ def differences(one: Any, other: Any, name: str = "event") -> list[str]:
         alike = one.dtype == other.dtype and one.shape == other.shape
         return [] if alike and np.array_equal(one, other, equal_nan=one.dtype.kind == "f") else [name]
     if dataclasses.is_dataclass(one):
-        names = [field.name for field in dataclasses.fields(one)]
+        names = [field.name for field in dataclasses.fields(one) if field.name not in WALL_CLOCK]
         one, other = ({name: getattr(value, name) for name in names} for value in (one, other))
     elif isinstance(one, tuple | list):
         one, other = dict(enumerate(one)), dict(enumerate(other))

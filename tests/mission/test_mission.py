@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -19,9 +18,7 @@ from mcap.reader import make_reader
 import mission.surveyor
 from mission.__main__ import main
 from mission.driving import Drive, drive
-from mission.recording.mcap_reader import read_events
 from mission.surveyor import NO_ARRIVAL
-from tests.mission.events_alike import differences
 
 pytestmark = pytest.mark.slow
 
@@ -67,15 +64,13 @@ def test_the_summary_tells_time_memory_versions_and_configuration(furnished: Pat
     assert all(scan["translation_error_m"] < 0.005 for scan in summary["registration"])
 
 
-def test_one_seed_gives_the_same_events_on_one_core_and_on_two(furnished: Path, tmp_path: Path) -> None:
+def test_one_seed_gives_the_same_bytes_on_one_core_and_on_two(furnished: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mission", "run", "room.xml", *DRAFT, "--max-scans", "3", "--quiet"]
     one_core = ["taskset", "-c", "0"] if sys.platform == "linux" else []
     other_hashes = os.environ | {"PYTHONHASHSEED": "5"}
     subprocess.run([*one_core, *command, "--out", str(tmp_path)], check=True, env=other_hashes)
-    assert (tmp_path / "doors.json").read_bytes() == (furnished / "doors.json").read_bytes()
-    one, other = (read_events(folder / "mission.mcap") for folder in (tmp_path, furnished))
-    found = [where for a, b in zip(one, other, strict=True) for where in differences(a, b)]
-    assert [where for where in found if not re.search("stage_seconds|peak_memory", where)] == []
+    for name in ("doors.json", "mission.mcap"):
+        assert (tmp_path / name).read_bytes() == (furnished / name).read_bytes(), name
 
 
 def test_a_room_with_three_walls_no_ceiling_and_no_door_is_a_success(tmp_path: Path, capsys) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from mission.events import Coloured, Drove, Event, MissionFinished, MissionStarted
+from mission.events import Coloured, Cost, Drove, Event, MissionFinished, MissionStarted
 from mission.recording.drawing import thin
 from mission.recording.mcap_messages import xyzw
 from mission.recording.mcap_reader import DamagedError, read_events
@@ -58,6 +59,11 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_same_mission_gives_the_same_bytes(recording: Path, tmp_path: Path) -> None:
     again = record(tmp_path / "another name.mcap", story())
     assert again.read_bytes() == recording.read_bytes()
+
+
+def test_what_the_mission_took_of_the_machine_changes_no_byte(recording: Path, tmp_path: Path) -> None:
+    told = [replace(event, cost=Cost((("scan", 1.5),), 10**9)) for event in story()]
+    assert record(tmp_path / "slow.mcap", told).read_bytes() == recording.read_bytes()
 
 
 def test_rerun_finds_nothing_wrong_with_the_file(recording: Path) -> None:
