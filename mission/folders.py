@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
+import shutil
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 
@@ -49,3 +55,26 @@ def _numbered(runs: Path, stem: str) -> Path:
             continue
         return folder
     raise AssertionError("unreachable")
+
+
+@contextmanager
+def sole_use(folder: Path) -> Iterator[None]:
+    """Hold a folder for one mission; when its process ends, however it ends, the folder is free again.
+
+    Raises:
+        UsageError: Another mission is at work in it.
+    """
+    place = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError as error:
+        raise UsageError(f"a mission is still at work in this folder: {folder}") from error
+    finally:
+        os.close(place)
+
+
+def viewer_command(recording: Path) -> str:
+    """What opens a recording: the viewer on the path, or else the one beside this Python."""
+    viewer = "rerun" if shutil.which("rerun") else str(Path(sys.executable).with_name("rerun"))
+    return f"{viewer} {recording}"

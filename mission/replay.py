@@ -12,11 +12,11 @@ from time import perf_counter
 from rich.console import Console
 
 from detector.room import DetectorError
-from mission.comparison import doors_compared
+from mission.comparison import doors_compared, doors_differ
 from mission.config import changed_config
 from mission.errors import MissionError, UsageError
 from mission.events import Event, MissionStarted
-from mission.folders import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder
+from mission.folders import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder, viewer_command
 from mission.memory import release_freed_memory
 from mission.progress import TerminalProgress
 from mission.recording.mcap_reader import DamagedError, read_events
@@ -63,8 +63,11 @@ def replay(options: argparse.Namespace) -> int:
             sinks.append(files.enter_context(McapSink(folder / RECORDING)))
         status = _tell(told, sinks, stopwatch)
     if options.redetect and status == DONE:
-        Console(width=None if sys.stdout.isatty() else LOG_WIDTH).print(doors_compared(before, report, "then", "now"))
-    console.print(f"open the recording:  rerun {folder / 'mission.rrd'}", highlight=False, soft_wrap=True)
+        told_apart = (
+            doors_compared(before, report, "then", "now") if doors_differ(before, report) else "no door differs"
+        )
+        Console(width=None if sys.stdout.isatty() else LOG_WIDTH).print(told_apart)
+    console.print(f"open the recording:  {viewer_command(folder / 'mission.rrd')}", highlight=False, soft_wrap=True)
     if not before.registrations and status == DONE:
         return _bad(UsageError(f"{path} holds no scan"))
     return status

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import json
 import logging
 import math
@@ -16,12 +15,21 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-import assets
 from detector.room import DetectorError
 from mission.config import read_config
 from mission.errors import MissionError, UsageError
 from mission.events import Event
-from mission.folders import BAD_INPUT, BELOW, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder
+from mission.folders import (
+    BAD_INPUT,
+    BELOW,
+    DONE,
+    FAILED,
+    INTERRUPTED,
+    LOG_WIDTH,
+    make_folder,
+    sole_use,
+    viewer_command,
+)
 from mission.interrupts import Interrupts
 from mission.mission import Mission
 from mission.order import Order, read_order, write_order
@@ -29,6 +37,7 @@ from mission.progress import TerminalProgress
 from mission.recording.cost import recording_cost
 from mission.report import Report, write_json
 from mission.resumption import Earlier, forget, is_complete, set_aside
+from mission.scene_file import find_scene
 from mission.sink import SideBySide, Sink
 from mission.stopwatch import Stopwatch
 from sim.errors import SimError
@@ -53,11 +62,14 @@ def run(options: argparse.Namespace) -> int:
     logging.basicConfig(level=logging.ERROR if silent else logging.WARNING, format="%(levelname)s: %(message)s")
     wide = None if sys.stderr.isatty() else LOG_WIDTH
     console = Console(stderr=True, quiet=silent, width=wide)
+    held = ExitStack()
     try:
         bars = dict(_setting("--fail-under", text) for text in options.fail_under)
         _check_metrics(bars)
         folder = _begun_folder(options)
         order = read_order(folder) if folder else _order(options)
+        if folder:
+            held.enter_context(sole_use(folder))
         if folder and is_complete(folder, order):
             console.print(f"the mission is complete, there is nothing to go on with: {folder}", soft_wrap=True)
             return _results(folder, bars, as_json=options.json)
@@ -69,17 +81,25 @@ def run(options: argparse.Namespace) -> int:
         progress = TerminalProgress(console)
         stopwatch = Stopwatch(progress.stage)
         earlier = Earlier(recording)
+        if folder:
+            kept = f"what was scanned before is taken from {recording}" if recording else "from its beginning"
+            console.print(f"the mission goes on: {kept}", highlight=False, soft_wrap=True)
         with Mission(scene, order.config, seed=order.seed, stopwatch=stopwatch, earlier=earlier) as mission:
             if folder is None:
                 folder = make_folder(options.out, scene_name=options.scene)
+                held.enter_context(sole_use(folder))
                 forget(folder)
                 write_order(folder, order)
             _, status = carry_out(mission, folder, progress=progress, stopwatch=stopwatch, start=start, streams=streams)
     except (SimError, MissionError) as error:
         print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
         return BAD_INPUT
+    finally:
+        held.close()
     judged = _results(folder, bars, as_json=options.json)
-    console.print(f"open the recording:  rerun {folder / 'mission.rrd'}", highlight=False, soft_wrap=True)
+    if status == INTERRUPTED:
+        console.print(f"go on with it:  python -m mission run --resume {folder}", highlight=False, soft_wrap=True)
+    console.print(f"open the recording:  {viewer_command(folder / 'mission.rrd')}", highlight=False, soft_wrap=True)
     return status or judged
 
 
@@ -170,24 +190,6 @@ def _events(mission: Mission, interrupts: Interrupts) -> Iterator[Event]:
         if event is None:
             return
         yield event
-
-
-def find_scene(scene: str) -> Path:
-    """The scene file: a path, or else a name in assets/rooms/.
-
-    Raises:
-        UsageError: There is no such file.
-    """
-    rooms = assets.FOLDER / "rooms"
-    for path in (Path(scene), rooms / scene):
-        if path.is_file():
-            return path
-    if scene and Path(scene).is_dir():
-        raise UsageError(f"the scene is a folder, not an MJCF file: {scene}")
-    shipped = sorted(path.name for path in rooms.glob("*.xml"))
-    close = difflib.get_close_matches(scene, shipped, n=1)
-    hint = f"did you mean {close[0]}?" if close else f"shipped scenes: {', '.join(shipped)}"
-    raise UsageError(f"no such scene: {scene!r} ({hint})")
 
 
 def _shorthands(options: argparse.Namespace) -> list[str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from mission.__main__ import EXAMPLES, main, parser
-from mission.run import find_scene
+from mission.scene_file import find_scene
 from sim.scene import load_scene
 
 ROOM = """

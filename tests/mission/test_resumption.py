@@ -18,6 +18,7 @@ from mission.__main__ import main
 from mission.config import MissionConfig
 from mission.errors import UsageError
 from mission.events import Event, MissionFinished, MissionStarted, Photographed, Scanned
+from mission.folders import sole_use
 from mission.order import FILE, Order, read_order, write_order
 from mission.recording.mcap_reader import DamagedError, read_events
 from mission.recording.mcap_sink import McapSink
@@ -121,6 +122,13 @@ def test_only_a_mission_that_came_to_its_end_is_complete(tmp_path: Path) -> None
     assert not is_complete(tmp_path, replace(ASKED, seed=8))
     record(tmp_path / "mission.mcap", [event for event in carried_out() if not isinstance(event, MissionFinished)])
     assert not is_complete(tmp_path, ASKED)
+
+
+def test_a_folder_serves_one_mission_at_a_time_and_the_next_when_it_is_done(tmp_path: Path) -> None:
+    with sole_use(tmp_path), pytest.raises(UsageError, match="still at work"), sole_use(tmp_path):
+        pass
+    with sole_use(tmp_path):
+        pass
 
 
 def test_a_scene_that_changed_since_is_refused_before_anything_is_renamed(tmp_path: Path) -> None:

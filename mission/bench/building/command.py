@@ -17,11 +17,12 @@ from mission.bench.building.tables import table_3
 from mission.bench.terminal import print_tables
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError
-from mission.folders import BAD_INPUT, LOG_WIDTH, make_folder
+from mission.folders import BAD_INPUT, LOG_WIDTH, make_folder, viewer_command
 from mission.mission import Mission
 from mission.progress import TerminalProgress
 from mission.report import Report, write_json
-from mission.run import carry_out, find_scene
+from mission.run import carry_out
+from mission.scene_file import find_scene
 from mission.stopwatch import Stopwatch
 from mission.versions import versions
 from sim.errors import SimError
@@ -48,7 +49,9 @@ def bench_building(options: argparse.Namespace) -> int:
         return BAD_INPUT
     write_files(folder, report, seed=options.seed, config=config)
     print_tables([table_3(report)])
-    log.print(f"open the recording:  rerun {folder / 'mission.rrd'}", highlight=False, markup=False, soft_wrap=True)
+    log.print(
+        f"open the recording:  {viewer_command(folder / 'mission.rrd')}", highlight=False, markup=False, soft_wrap=True
+    )
     return status
 
 

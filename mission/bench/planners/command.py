@@ -26,7 +26,7 @@ from mission.candidates import PlanningParameters
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError
 from mission.folders import BAD_INPUT, DONE, INTERRUPTED, LOG_WIDTH, make_folder
-from mission.run import find_scene
+from mission.scene_file import find_scene
 from sim.errors import SimError
 from sim.scene import load_scene
 

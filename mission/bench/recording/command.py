@@ -28,7 +28,8 @@ from mission.recording.mcap_reader import read_events
 from mission.recording.mcap_sink import McapSink
 from mission.recording.rerun_sink import RerunSink
 from mission.report import write_json
-from mission.run import carry_out, find_scene
+from mission.run import carry_out
+from mission.scene_file import find_scene
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
 from mission.versions import versions

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
+from pathlib import Path
+
 import assets
 from mission.bench.scenes.building import BUILDING
 from mission.bench.scenes.flat import FLAT
@@ -10,10 +13,18 @@ from mission.bench.scenes.writing import written
 HOUSES = (FLAT, BUILDING)
 
 
-def main() -> None:
+def main(arguments: list[str] | None = None) -> None:
     """Write all files."""
+    parser = argparse.ArgumentParser(
+        prog="python -m mission.bench.scenes",
+        description="Write flat.xml and building.xml from their plans; what was edited by hand in them is replaced.",
+    )
+    rooms = assets.FOLDER / "rooms"
+    parser.add_argument("--out", type=Path, default=rooms, metavar="DIR", help="where to (default: %(default)s)")
+    folder = parser.parse_args(arguments).out
+    folder.mkdir(parents=True, exist_ok=True)
     for house in HOUSES:
-        path = assets.FOLDER / "rooms" / f"{house.name}.xml"
+        path = folder / f"{house.name}.xml"
         path.write_text(written(house))
         print(path)
 

@@ -18,7 +18,7 @@ from mission.bench.speed.report import SpeedReport, write_report
 from mission.bench.speed.worlds import cluttered_world, scene_world
 from mission.bench.terminal import print_tables, progress_bar
 from mission.errors import MissionError
-from mission.run import BAD_INPUT, DONE, INTERRUPTED, LOG_WIDTH, make_folder
+from mission.folders import BAD_INPUT, DONE, INTERRUPTED, LOG_WIDTH, make_folder
 from sim.errors import SimError
 
 SCENE = "room.xml"

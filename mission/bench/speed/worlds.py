@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mission.rigid import Pose
-from mission.run import find_scene
+from mission.scene_file import find_scene
 from sim.render import Renderer
 from sim.robot import Robot, RobotParameters
 from sim.scene import load_scene

@@ -21,7 +21,7 @@ from mission.bench.walls.rooms import CATEGORIES, BenchRoom, rooms
 from mission.bench.walls.variants import Variant, variants
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError, UsageError
-from mission.folders import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder
+from mission.folders import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder, viewer_command
 from sim.errors import SimError
 
 Judged = dict[Variant, list[WallJudgement]]
@@ -59,7 +59,9 @@ def bench_walls(options: argparse.Namespace) -> int:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
     log.print(f"doors.csv, result.json and pictures:  {folder}", highlight=False, markup=False, soft_wrap=True)
-    log.print(f"open the recording:  rerun {folder / 'walls.rrd'}", highlight=False, markup=False, soft_wrap=True)
+    log.print(
+        f"open the recording:  {viewer_command(folder / 'walls.rrd')}", highlight=False, markup=False, soft_wrap=True
+    )
     return DONE
 
 
