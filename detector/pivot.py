@@ -30,8 +30,10 @@ WELL_BESIDE = 0.1
 """Somebody nearer to the leaf's plane sees neither face well [m]."""
 FIRST_RADIUS = 0.1
 """Points nearer to the hinge may be of the frame [m]."""
-SHARE = 0.05
-"""Least part of the points of the one face that the other has, if it was seen."""
+PIECE, SEEN = 0.05, 0.35
+"""Length of the pieces of a leaf [m], and the least part of them in which its other face was seen if it was at all."""
+FEW = 3
+"""A piece with fewer points was not seen."""
 
 
 def hinge_side(
@@ -62,7 +64,7 @@ def hinge_side(
     places = np.array([[sign * (camera[0] - side), camera[2]] for camera in cameras]) - centre
     radius = plan @ along + float(centre @ along)
     on_leaf = (radius > FIRST_RADIUS) & (radius < doorway.width)
-    shown = _shown_face(plan[on_leaf] @ out, places @ out)
+    shown = _shown_face(plan[on_leaf] @ out, radius[on_leaf] / doorway.width, places @ out, doorway.width)
     if shown is None:
         return doorway
     which, thickness = shown
@@ -76,22 +78,25 @@ def hinge_side(
 
 
 def _shown_face(
-    offsets: NDArray[np.float64], cameras: NDArray[np.float64]
+    offsets: NDArray[np.float64], along: NDArray[np.float64], cameras: NDArray[np.float64], width: float
 ) -> tuple[Literal["back", "inner"], float] | None:
     """Which of the leaf's faces the line lies on, and how thick the leaf is [m]; None if nothing tells.
 
     Args:
         offsets: (N,) distance of points from the line, towards the doorway [m].
-        cameras: (K,) likewise of the cameras.
+        along: (N,) where they lie on the leaf, 0 to 1 from the hinge.
+        cameras: (K,) distances like those of the points.
+        width: Of the leaf [m].
     """
     edges = np.arange(-THICKNESS[1] - BIN / 2, THICKNESS[1] + BIN, BIN)
     counts = np.histogram(offsets, edges)[0]
     middles = (edges[:-1] + edges[1:]) / 2
-    own = counts[np.abs(middles) < THICKNESS[0] / 2].sum()
-    other = int(np.where(np.abs(middles) > THICKNESS[0], counts, 0).argmax())
-    if counts[other] > SHARE * own:
-        near = offsets[np.abs(offsets - middles[other]) < BIN]
-        thickness = float(np.median(near))
+    other = middles[int(np.where(np.abs(middles) > THICKNESS[0], counts, 0).argmax())]
+    near = np.abs(offsets - other) < BIN
+    pieces = max(1, round(width / PIECE))
+    seen = np.bincount((along[near] * pieces).astype(int), minlength=pieces) >= FEW
+    if seen.mean() > SEEN:
+        thickness = float(np.median(offsets[near]))
         return ("back" if thickness > 0 else "inner"), abs(thickness)
     well = cameras[np.abs(cameras) > WELL_BESIDE]
     if len(well) and (well > 0).all():
