@@ -7,6 +7,9 @@ import resource
 import sys
 from pathlib import Path
 
+_M_ARENA_MAX = -8
+"""Of glibc's malloc.h."""
+
 
 def peak_memory() -> int:
     """Largest resident set of this process so far [bytes]."""
@@ -21,6 +24,17 @@ def current_memory() -> int:
     except FileNotFoundError:
         return peak_memory()
     return pages * resource.getpagesize()
+
+
+def share_one_heap() -> None:
+    """Have all threads take memory from one heap; call it before there are any. Nothing happens without glibc.
+
+    By default every thread has a heap of its own, and what one frees no other uses: a recording that is written by
+    threads grew by 45 MB a scan, and now does not grow.
+    """
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None) if sys.platform == "linux" else None
+    if mallopt is not None:
+        mallopt(_M_ARENA_MAX, 1)
 
 
 def release_freed_memory() -> None:
