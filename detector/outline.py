@@ -56,7 +56,6 @@ def settle_sides(
         return rectangles
     face, values = scene.face & ~passed, components(scene.merged, parameters)
     nothing = np.zeros_like(passed)
-
     return tuple(
         _settled(
             r,

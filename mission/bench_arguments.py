@@ -38,7 +38,7 @@ examples:
   python -m mission bench speed --json > speed.json
 """
 SPEED_PARTS = ("scans", "photographs", "detector", "missions", "start-up")
-"""As in `mission.bench.speed.command.PARTS`."""
+"""What `bench speed` times."""
 
 COVERAGE_HELP = """\
 coverage is the share of a room's visible structure that its scans have a return of: of all 10 cm cells of its walls,

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from mission.comparison import differences, doors_compared, doors_differ, stage_times
 from mission.errors import MissionError
 from mission.events import Coloured, DoorsDetected, Photographed, Scanned
-from mission.folders import BAD_INPUT, BELOW, DONE, LOG_WIDTH
+from mission.folders import BELOW, DONE
 from mission.recording.mcap_reader import read_events
 from mission.report import Report
+from mission.terminal import refuse, result_console
 
 
 def compare(options: argparse.Namespace) -> int:
@@ -25,9 +24,8 @@ def compare(options: argparse.Namespace) -> int:
         paths = Path(options.first), Path(options.second)
         first, second = map(_report, paths)
     except MissionError as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return BAD_INPUT
-    console = Console(width=None if sys.stdout.isatty() else LOG_WIDTH)
+        return refuse(error)
+    console = result_console()
     rows = differences(first, second)
     for title, lines in (("the missions", rows), ("wall clock, no two runs have the same", stage_times(*paths))):
         if lines:

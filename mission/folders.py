@@ -16,9 +16,6 @@ from mission.errors import UsageError
 DONE, BELOW, BAD_INPUT, FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status."""
 
-LOG_WIDTH = 120
-"""Of what is printed where no terminal tells its width, such as on a CI machine."""
-
 
 def make_folder(out: str | None, *, scene_name: str, first_file: str = "mission.rrd") -> Path:
     """Make the folder for the results.

@@ -7,7 +7,7 @@ own, and need no simulator.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import replace
 from typing import Any, cast
 
 from mission.completion import Completion
@@ -33,7 +33,6 @@ from mission.explored_building import ExploredBuilding
 from mission.explored_room import ExploredRoom
 from mission.recorded_mopad import RecordedMopad
 from mission.registration import Registrar
-from mission.rigid import Pose
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
 from mission.surveyor import Surveyor
@@ -107,18 +106,15 @@ class Redetection:
                 case _ if not isinstance(event, _MADE_ANEW):
                     yield self._surveyor.again(event)
 
-    def _begun(self) -> MissionStarted:
-        old = self._started
-        content = _content(old)
-        changed = {"config": self._config.model_dump(mode="json"), "versions": versions()}
-        begun: MissionStarted = self._surveyor.event(MissionStarted, **content | changed)
-        return begun
+    def _begun(self) -> Event:
+        config = self._config.model_dump(mode="json")
+        return self._surveyor.again(replace(self._started, config=config, versions=versions()))
 
     def _room(self, number: int) -> ExploredRoom:
         registrar = Registrar(self._config.registration)
         return ExploredRoom(number, self._started.footprint, self._config, registrar)
 
-    def _entered(self, event: RoomEntered) -> RoomEntered:
+    def _entered(self, event: RoomEntered) -> Event:
         """Begin a room; one that was not judged by now was none."""
         if self._newest not in self._building.rooms:
             self._building.drop(self._newest)
@@ -131,10 +127,7 @@ class Redetection:
         else:  # judged with these parameters the room before is none
             self._building.begin(number, place, "set down")
         self._rooms[number], self._newest = self._beyond, number
-        content = _content(event)
-        placed: dict[str, Pose] = {"world_from_room": self._building.world_from_room[number]}
-        entered: RoomEntered = self._surveyor.event(RoomEntered, **content | placed)
-        return entered
+        return self._surveyor.again(replace(event, world_from_room=self._building.world_from_room[number]))
 
     def _scan(self, scanned: Scanned, events: _Ahead) -> Iterator[Event]:
         """Register and colour a scan again: one of the room, or without photographs one from a doorway."""
@@ -176,11 +169,6 @@ class Redetection:
     def _complete(self, number: int) -> Iterator[Event]:
         if number in self._understood:
             yield from self._completion.complete(self._rooms[number], *self._understood.pop(number))
-
-
-def _content(event: Event) -> dict[str, Any]:
-    """What an event says, beside when and where."""
-    return {name: value for name, value in vars(event).items() if name not in {field.name for field in fields(Event)}}
 
 
 class _Ahead:

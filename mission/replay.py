@@ -9,14 +9,12 @@ from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
 
-from rich.console import Console
-
 from detector.room import DetectorError
 from mission.comparison import doors_compared, doors_differ
 from mission.config import changed_config
 from mission.errors import MissionError, UsageError
 from mission.events import Event, MissionStarted
-from mission.folders import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder, viewer_command
+from mission.folders import DONE, FAILED, INTERRUPTED, make_folder, viewer_command
 from mission.memory import release_freed_memory
 from mission.progress import TerminalProgress
 from mission.recording.mcap_reader import DamagedError, read_events
@@ -25,6 +23,7 @@ from mission.redetection import UNUSED, USED, Redetection
 from mission.report import Report, write_json
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
+from mission.terminal import log_console, refuse, result_console
 
 RECORDING = "mission.mcap"
 """Name of a recording in a folder of results."""
@@ -34,7 +33,7 @@ def replay(options: argparse.Namespace) -> int:
     """Tell a recorded mission again as the command line says, and return the exit status."""
     start = perf_counter()
     path = Path(options.recording)
-    console = _console(options)
+    console = log_console(quiet=options.quiet)
     progress = TerminalProgress(console)
     stopwatch = Stopwatch(progress.stage)
     before = Report()
@@ -51,7 +50,7 @@ def replay(options: argparse.Namespace) -> int:
             told = _with(first, events)
         folder = _folder(options.out, path, "replay", ("mission.rrd", RECORDING, "doors.json", "summary.json"))
     except MissionError as error:
-        return _bad(error)
+        return refuse(error)
     report = Report()
     with ExitStack() as files:
         files.callback(_write_reports, folder, report, path, stopwatch, start)
@@ -66,17 +65,17 @@ def replay(options: argparse.Namespace) -> int:
         told_apart = (
             doors_compared(before, report, "then", "now") if doors_differ(before, report) else "no door differs"
         )
-        Console(width=None if sys.stdout.isatty() else LOG_WIDTH).print(told_apart)
+        result_console().print(told_apart)
     console.print(f"open the recording:  {viewer_command(folder / 'mission.rrd')}", highlight=False, soft_wrap=True)
     if not before.registrations and status == DONE:
-        return _bad(UsageError(f"{path} holds no scan"))
+        return refuse(UsageError(f"{path} holds no scan"))
     return status
 
 
 def recover(options: argparse.Namespace) -> int:
     """Write what can be read of a recording into a clean one, and return the exit status."""
     path = Path(options.recording)
-    console = _console(options)
+    console = log_console(quiet=options.quiet)
     try:
         events = read_events(path)
         first = _first(events, path)
@@ -92,7 +91,7 @@ def recover(options: argparse.Namespace) -> int:
             except DamagedError as error:
                 fault = str(error)
     except (MissionError, OSError) as error:
-        return _bad(error)
+        return refuse(error)
     console.print(fault, highlight=False, soft_wrap=True)
     console.print(f"{last.step + 1} events are saved in {saved}", highlight=False, soft_wrap=True)
     return DONE
@@ -103,15 +102,6 @@ def _check_used(settings: Sequence[str]) -> None:
     for setting in settings:
         if not setting.startswith(tuple(f"{part}." for part in USED)):
             raise UsageError(f"--set {setting}: --redetect does not do this again; it uses {', '.join(USED)}")
-
-
-def _console(options: argparse.Namespace) -> Console:
-    return Console(stderr=True, quiet=options.quiet, width=None if sys.stderr.isatty() else LOG_WIDTH)
-
-
-def _bad(error: Exception) -> int:
-    print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-    return BAD_INPUT
 
 
 def _first(events: Iterator[Event], path: Path) -> MissionStarted:
@@ -162,7 +152,7 @@ def _tell(told: Iterator[Event], sinks: list[Sink], stopwatch: Stopwatch) -> int
     except KeyboardInterrupt:
         return INTERRUPTED
     except UsageError as error:
-        return _bad(error)
+        return refuse(error)
     except (MissionError, DetectorError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return FAILED

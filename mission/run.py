@@ -13,19 +13,15 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from rich.console import Console
-
 from detector.room import DetectorError
 from mission.config import read_config
 from mission.errors import MissionError, UsageError
 from mission.events import Event
 from mission.folders import (
-    BAD_INPUT,
     BELOW,
     DONE,
     FAILED,
     INTERRUPTED,
-    LOG_WIDTH,
     make_folder,
     sole_use,
     viewer_command,
@@ -40,6 +36,7 @@ from mission.resumption import Earlier, forget, is_complete, set_aside
 from mission.scene_file import find_scene
 from mission.sink import SideBySide, Sink
 from mission.stopwatch import Stopwatch
+from mission.terminal import log_console, refuse
 from sim.errors import SimError
 from sim.obstacles import Obstacle
 from sim.scene import Scene, load_scene
@@ -60,8 +57,7 @@ def run(options: argparse.Namespace) -> int:
     start = perf_counter()
     silent = options.quiet or options.json
     logging.basicConfig(level=logging.ERROR if silent else logging.WARNING, format="%(levelname)s: %(message)s")
-    wide = None if sys.stderr.isatty() else LOG_WIDTH
-    console = Console(stderr=True, quiet=silent, width=wide)
+    console = log_console(quiet=silent)
     held = ExitStack()
     try:
         bars = dict(_setting("--fail-under", text) for text in options.fail_under)
@@ -92,8 +88,7 @@ def run(options: argparse.Namespace) -> int:
                 write_order(folder, order)
             _, status = carry_out(mission, folder, progress=progress, stopwatch=stopwatch, start=start, streams=streams)
     except (SimError, MissionError) as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return BAD_INPUT
+        return refuse(error)
     finally:
         held.close()
     judged = _results(folder, bars, as_json=options.json)

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import argparse
 import logging
-import sys
 from pathlib import Path
 from time import perf_counter
 from typing import Any
-
-from rich.console import Console
 
 from mission.bench.building import paper
 from mission.bench.building.faces import door_faces
@@ -17,13 +14,14 @@ from mission.bench.building.tables import table_3
 from mission.bench.terminal import print_tables
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError
-from mission.folders import BAD_INPUT, LOG_WIDTH, make_folder, viewer_command
+from mission.folders import make_folder, viewer_command
 from mission.mission import Mission
 from mission.progress import TerminalProgress
 from mission.report import Report, write_json
 from mission.run import carry_out
 from mission.scene_file import find_scene
 from mission.stopwatch import Stopwatch
+from mission.terminal import log_console, refuse
 from mission.versions import versions
 from sim.errors import SimError
 from sim.scene import load_scene
@@ -35,7 +33,7 @@ def bench_building(options: argparse.Namespace) -> int:
     """Run the benchmark as the command line says and return the exit status."""
     start = perf_counter()
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
-    log = Console(stderr=True, width=None if sys.stderr.isatty() else LOG_WIDTH)
+    log = log_console()
     try:
         config = read_config(options.config, options.set)
         progress = TerminalProgress(log)
@@ -45,8 +43,7 @@ def bench_building(options: argparse.Namespace) -> int:
             folder = make_folder(options.out, scene_name="bench-building", first_file="result.json")
             report, status = carry_out(mission, folder, progress=progress, stopwatch=stopwatch, start=start)
     except (SimError, MissionError, OSError) as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return BAD_INPUT
+        return refuse(error)
     write_files(folder, report, seed=options.seed, config=config)
     print_tables([table_3(report)])
     log.print(

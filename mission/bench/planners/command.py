@@ -12,7 +12,6 @@ from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
 
 import assets
 from mission.bench.parallel import Workers, default_jobs
@@ -25,8 +24,9 @@ from mission.bench.walls.scanning import scanner_mount
 from mission.candidates import PlanningParameters
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError
-from mission.folders import BAD_INPUT, DONE, INTERRUPTED, LOG_WIDTH, make_folder
+from mission.folders import DONE, INTERRUPTED, make_folder
 from mission.scene_file import find_scene
+from mission.terminal import log_console, refuse
 from sim.errors import SimError
 from sim.scene import load_scene
 
@@ -39,7 +39,7 @@ MAX_SCANS = 10
 def bench_planners(options: argparse.Namespace) -> int:
     """Run the benchmark as the command line says and return the exit status."""
     logging.basicConfig(level=logging.ERROR, format="%(levelname)s: %(message)s")
-    log = Console(stderr=True, width=None if sys.stderr.isatty() else LOG_WIDTH)
+    log = log_console()
     try:
         config = for_planning(read_config(options.config, options.set))
         scenes = [find_scene(scene) for scene in options.scene or _shipped()]
@@ -57,8 +57,7 @@ def bench_planners(options: argparse.Namespace) -> int:
         print_tables(report.tables())
         write_report(folder, report)
     except (SimError, MissionError, OSError) as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return BAD_INPUT
+        return refuse(error)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import logging
-import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
@@ -13,14 +12,13 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from mission.bench.tables import BenchTable
 from mission.bench.terminal import print_tables
 from mission.config import read_config
 from mission.errors import MissionError
 from mission.events import Coloured, Event
-from mission.folders import BAD_INPUT, LOG_WIDTH, make_folder
+from mission.folders import BAD_INPUT, make_folder
 from mission.memory import current_memory, release_freed_memory
 from mission.mission import Mission
 from mission.progress import TerminalProgress
@@ -32,6 +30,7 @@ from mission.run import carry_out
 from mission.scene_file import find_scene
 from mission.sink import Sink
 from mission.stopwatch import Stopwatch
+from mission.terminal import log_console, refuse
 from mission.versions import versions
 from sim.errors import SimError
 from sim.scene import load_scene
@@ -64,7 +63,7 @@ def bench_recording(options: argparse.Namespace) -> int:
     """Run the benchmark as the command line says and return the exit status."""
     start = perf_counter()
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
-    log = Console(stderr=True, width=None if sys.stderr.isatty() else LOG_WIDTH)
+    log = log_console()
     try:
         config = read_config(options.config, options.set)
         progress = TerminalProgress(log)
@@ -80,8 +79,7 @@ def bench_recording(options: argparse.Namespace) -> int:
         log.print("reading the recording back", highlight=False)
         cost = measure(folder, scans=scans, share=share)
     except (SimError, MissionError, OSError) as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return BAD_INPUT
+        return refuse(error)
     write_json(folder / "result.json", result(cost, seed=options.seed, config=config.model_dump(mode="json")))
     (folder / "tables.md").write_text(table(cost).markdown())
     print_tables([table(cost)])

@@ -8,8 +8,6 @@ import logging
 import sys
 from collections.abc import Callable
 
-from rich.console import Console
-
 from mission.bench.speed.beams import compare_casters
 from mission.bench.speed.detecting import time_detector
 from mission.bench.speed.missions import time_mission, time_start_up
@@ -17,20 +15,21 @@ from mission.bench.speed.photographs import time_photographs
 from mission.bench.speed.report import SpeedReport, write_report
 from mission.bench.speed.worlds import cluttered_world, scene_world
 from mission.bench.terminal import print_tables, progress_bar
+from mission.bench_arguments import SPEED_PARTS as PARTS
 from mission.errors import MissionError
-from mission.folders import BAD_INPUT, DONE, INTERRUPTED, LOG_WIDTH, make_folder
+from mission.folders import DONE, INTERRUPTED, make_folder
+from mission.terminal import log_console, refuse
 from sim.errors import SimError
 
 SCENE = "room.xml"
 LARGE = ("flat.xml", "building.xml")
 DRAFT = "scanner.pattern=draft"
-PARTS = ("scans", "photographs", "detector", "missions", "start-up")
 
 
 def bench_speed(options: argparse.Namespace) -> int:
     """Run the benchmark as the command line says and return the exit status."""
     logging.basicConfig(level=logging.ERROR, format="%(levelname)s: %(message)s")
-    log = Console(stderr=True, quiet=options.json, width=None if sys.stderr.isatty() else LOG_WIDTH)
+    log = log_console(quiet=options.json)
     try:
         folder = make_folder(options.out, scene_name="bench-speed", first_file="result.json")
         report = SpeedReport(options.repeats)
@@ -42,8 +41,7 @@ def bench_speed(options: argparse.Namespace) -> int:
                 part()
         write_report(folder, report)
     except (SimError, MissionError, OSError) as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return BAD_INPUT
+        return refuse(error)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED

@@ -9,8 +9,6 @@ from collections.abc import Collection, Sequence
 from functools import partial
 from pathlib import Path
 
-from rich.console import Console
-
 from detector.room import DetectorError
 from mission.bench.parallel import Workers, default_jobs
 from mission.bench.terminal import Runner, print_tables, progress_bar, run_tasks
@@ -21,7 +19,8 @@ from mission.bench.walls.rooms import CATEGORIES, BenchRoom, rooms
 from mission.bench.walls.variants import Variant, variants
 from mission.config import MissionConfig, read_config
 from mission.errors import MissionError, UsageError
-from mission.folders import BAD_INPUT, DONE, FAILED, INTERRUPTED, LOG_WIDTH, make_folder, viewer_command
+from mission.folders import DONE, FAILED, INTERRUPTED, make_folder, viewer_command
+from mission.terminal import log_console, refuse
 from sim.errors import SimError
 
 Judged = dict[Variant, list[WallJudgement]]
@@ -31,7 +30,7 @@ Judged = dict[Variant, list[WallJudgement]]
 def bench_walls(options: argparse.Namespace) -> int:
     """Run the benchmark as the command line says and return the exit status."""
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
-    log = Console(stderr=True, width=None if sys.stderr.isatty() else LOG_WIDTH)
+    log = log_console()
     try:
         config = read_config(options.config, options.set)
         categories = _categories(options)
@@ -50,8 +49,7 @@ def bench_walls(options: argparse.Namespace) -> int:
         print_tables(report.tables())
         write_report(folder, report)
     except (SimError, MissionError, OSError) as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return BAD_INPUT
+        return refuse(error)
     except DetectorError as error:
         print(f"error: {error}", file=sys.stderr)
         return FAILED
