@@ -9,7 +9,7 @@ from typing import NoReturn
 
 from mission.argument_types import port, positive, seed
 from mission.bench_arguments import PLANNERS, add_benchmarks
-from mission.memory import share_one_heap
+from mission.memory import hold_little_memory
 from mission.recording_arguments import add_recording_commands
 
 EXAMPLES = """\
@@ -28,7 +28,7 @@ then:
 def main(arguments: list[str] | None = None) -> int:
     """Run a command line and return its exit status."""
     options = parser().parse_args(arguments)
-    share_one_heap()
+    hold_little_memory()
     try:
         if options.command == "bench":
             return _bench(options)

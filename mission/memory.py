@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import resource
 import sys
 from pathlib import Path
@@ -26,12 +27,14 @@ def current_memory() -> int:
     return pages * resource.getpagesize()
 
 
-def share_one_heap() -> None:
-    """Have all threads take memory from one heap; call it before there are any. Nothing happens without glibc.
+def hold_little_memory() -> None:
+    """Set the process's allocators to give back what is free; call it before threads and slow libraries are there.
 
-    By default every thread has a heap of its own, and what one frees no other uses: a recording that is written by
-    threads grew by 45 MB a scan, and now does not grow.
+    By default glibc has a heap for every thread, and what one frees no other uses: a recording that is written by
+    threads grew by 45 MB a scan. Rerun and Arrow bring an allocator of their own, mimalloc, which keeps the pages of
+    threads that are gone: 4 MB a scan. Neither changes what is computed or, measurably, how long it takes.
     """
+    os.environ.setdefault("MIMALLOC_PURGE_DELAY", "0")
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None) if sys.platform == "linux" else None
     if mallopt is not None:
         mallopt(_M_ARENA_MAX, 1)
