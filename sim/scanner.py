@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.echo import REFLECTANCE_NOISE_DB, Receiver, receive
-from sim.panorama import cast_panorama
+from sim.panorama import BeamCaster
 from sim.render import Renderer
 from sim.render.materials import materials_of
 from sim.scan import ELEVATION_TOP_DEG, Scan, ScannerParameters
@@ -60,7 +60,7 @@ class Scanner:
             parameters: how to scan.
         """
         self.parameters = parameters or ScannerParameters()
-        self._renderer = renderer
+        self._caster = BeamCaster(renderer)
         self._albedo_db = _albedo_db(renderer.model)
         self._receiver = Receiver(
             precision=self.parameters.precision if self.parameters.noise else 0.0,
@@ -79,7 +79,7 @@ class Scanner:
         """
         pattern = PATTERNS[self.parameters.pattern]
         elevations, azimuths = pattern.elevations(), pattern.azimuths()
-        seen = cast_panorama(self._renderer, data, world_from_scanner, elevations, azimuths, self._albedo_db)
+        seen = self._caster.cast(data, world_from_scanner, elevations, azimuths, self._albedo_db)
         ranges, reflectance = receive(*seen, elevations, self._receiver, rng)
         return Scan(elevations, azimuths, ranges, reflectance, ranges.size / BEAMS_PER_SECOND)
 

@@ -1,0 +1,55 @@
+"""Exact rays for the beams that no pixel answers for: at the edges of things, and on round ones."""
+
+from __future__ import annotations
+
+import copy
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+_SHOWN, _HIDDEN = 0, mujoco.mjNGROUP - 1
+_SHOWN_ONLY = np.eye(1, mujoco.mjNGROUP, _SHOWN, dtype=np.uint8)[0]
+_FARTHEST = 1e10
+
+
+class EdgeRays:
+    """MuJoCo's rays against a few geoms at a time. Not for several threads at once."""
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        """Make room for the rays of a world.
+
+        Args:
+            model: the world; it is copied.
+        """
+        self._model = copy.copy(model)  # whose groups say what rays meet
+        self._model.geom_group[:] = _HIDDEN
+        self._model.body_bvhadr[:] = -1  # bounding volumes hold colliding geoms only; others would be missed
+        self._data = mujoco.MjData(self._model)
+
+    def place(self, data: mujoco.MjData) -> None:
+        """Take over where the geoms are in `data`."""
+        self._data.geom_xpos[:] = data.geom_xpos
+        self._data.geom_xmat[:] = data.geom_xmat
+
+    def cast(
+        self, eye: NDArray[np.float64], beams: NDArray[np.float64], geoms: NDArray[np.int32]
+    ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+        """Cast beams against some geoms.
+
+        Args:
+            eye: (3,) where the beams start, in the world frame.
+            beams: (N, 3) unit vectors in the world frame.
+            geoms: (G,) ids of what beams can meet.
+
+        Returns:
+            (N,) range [m], infinite where a beam meets nothing; (N,) geom id, then -1.
+        """
+        ranges, met = np.empty(len(beams)), np.empty(len(beams), np.int32)
+        self._model.geom_group[geoms] = _SHOWN
+        mujoco.mj_multiRay(
+            *(self._model, self._data, np.ascontiguousarray(eye), np.ascontiguousarray(beams).ravel(), _SHOWN_ONLY),
+            *(True, -1, met, ranges, None, len(beams), _FARTHEST),
+        )
+        self._model.geom_group[geoms] = _HIDDEN
+        return np.where(met < 0, np.inf, ranges), met
