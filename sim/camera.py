@@ -5,23 +5,18 @@ from __future__ import annotations
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 
-import cv2
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.noise import normal_noise
+from sim.bands import bands
+from sim.developing import Exposure, develop, linear
 from sim.photo import CameraParameters, Photo
 from sim.render import Depth, Renderer, View, looking_along
-from sim.render.materials import linear_from_srgb, materials_of, srgb_from_linear
-from sim.shading import Gloss, Image, Window, flash_light, seen_from_flash
+from sim.render.materials import materials_of
+from sim.shading import NEIGHBOURS, Gloss, Window, flash_light, seen_from_flash
 
-FULL_WELL = 20_900.0
-"""Electrons at full scale, ISO 200 (photonstophotos.net, same sensor)."""
-READ_NOISE = 11.0
-"""Electrons, one sigma, ISO 200."""
 GUIDE_NUMBER = 17.0
 """Aperture x distance of a right exposure by the built-in flash at full power, ISO 200 [m]."""
 APERTURES = 2.8, 22.0
@@ -39,22 +34,6 @@ paint, lights a wall as evenly as matt light does, and is no highlight."""
 
 _NEAREST = 0.5
 """Nearest surface that the flash's view covers up to the edge of the picture [m]."""
-_LEVELS = 2**12
-"""Of the analogue-digital converter."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Exposure:
-    """What falls on the sensor for a flash of one unit; bottom row first."""
-
-    albedo: Image
-    """(H, W, 3) linear"""
-    light: Image
-    """(H, W) of flash and room, on matt surfaces."""
-    gloss: Image
-    """(H, W) light of the gloss lobes."""
-    mirrors: NDArray[np.bool_]
-    """(H, W) where the lobe is narrow enough to be a highlight."""
 
 
 class Camera:
@@ -139,53 +118,35 @@ class Camera:
         focal_x, focal_y = self.parameters.focal_px
         return math.ceil(focal_x * abs(FLASH[0]) / _NEAREST) + 1, math.ceil(focal_y * abs(FLASH[1]) / _NEAREST) + 1
 
-    def _shade(self, albedo: NDArray[np.uint8], lens: Depth, flash: Depth) -> _Exposure:
-        """Light a rendered shot; pixel by pixel, so that it can be done in any thread."""
-        renderer, window = self._renderer, self._window
-        scale, offset = np.float32(renderer.inverse_depth_scale), np.float32(renderer.inverse_depth_offset)
-        inverse_depth = lens.raw * scale + offset
-        seen = seen_from_flash(inverse_depth, flash.raw * scale + offset, FLASH, window, self._margin)
-        gloss = Gloss(
-            self._materials.specular[lens.geom_ids][lens.segments],
-            self._materials.exponent[lens.geom_ids][lens.segments],
-        )
-        light = flash_light(inverse_depth, seen, FLASH, window, gloss)
-        matt = light.diffuse + np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
-        mirrors = gloss.exponent > SHEEN
-        return _Exposure(np.asarray(cv2.LUT(albedo, _LINEAR), np.float32), matt, light.gloss, mirrors)
+    def _shade(self, albedo: NDArray[np.uint8], lens: Depth, flash: Depth) -> Exposure:
+        """Light a rendered shot, band by band; in any thread, as no two shots share anything."""
+        scale = np.float32(self._renderer.inverse_depth_scale)
+        offset = np.float32(self._renderer.inverse_depth_offset)
+        specular, exponent = self._materials.specular[lens.geom_ids], self._materials.exponent[lens.geom_ids]
+        flash_inverse_depth = flash.raw * scale + offset
+        ambient = np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
+        height, width = lens.raw.shape
+        light, gloss = np.empty((2, height, width), np.float32)
+        mirrors = np.empty((height, width), bool)
+        for rows in bands(lens.raw.shape):
+            near = slice(max(rows.start - NEIGHBOURS, 0), rows.stop + NEIGHBOURS)
+            inner = slice(rows.start - near.start, rows.stop - near.start)
+            inverse_depth = lens.raw[near] * scale + offset
+            window = self._window.part(near)
+            first = self._margin[0], self._margin[1] + near.start
+            seen = seen_from_flash(inverse_depth, flash_inverse_depth, FLASH, window, first)
+            shine = Gloss(specular.take(lens.segments[near]), exponent.take(lens.segments[near]))
+            lit = flash_light(inverse_depth, seen, FLASH, window, shine)
+            light[rows], gloss[rows] = lit.diffuse[inner] + ambient, lit.gloss[inner]
+            mirrors[rows] = shine.exponent[inner] > SHEEN
+        return Exposure(albedo, light, gloss, mirrors)
 
-    def _develop(self, exposed: _Exposure, gain: float, scanner_from_camera: NDArray[np.float64], seed: int) -> Photo:
-        """Sensor and raw converter: photons, noise, clipping, 12 bit, sRGB."""
-        signal = exposed.albedo * cv2.merge([exposed.light * np.float32(gain)] * 3)
-        signal += cv2.merge([exposed.gloss * np.float32(gain)] * 3)
-        if self.parameters.noise:  # photon noise of more than a few electrons is normal
-            sigma = signal * np.float32(1 / FULL_WELL)
-            sigma += np.float32((READ_NOISE / FULL_WELL) ** 2)
-            np.sqrt(sigma, out=sigma)
-            sigma *= normal_noise(seed, signal.shape)
-            signal += sigma
-        np.clip(signal, 0, 1, out=signal)
-        signal *= np.float32(_LEVELS - 1)
-        signal += np.float32(0.5)
-        image = _SRGB.take(signal.astype(np.uint16))
-        gloss = _brightening(exposed, gain)
+    def _develop(self, exposed: Exposure, gain: float, scanner_from_camera: NDArray[np.float64], seed: int) -> Photo:
+        image, true_gloss = develop(exposed, gain, seed if self.parameters.noise else None)
         focal_x, focal_y = self.parameters.focal_px
-        height, width = gloss.shape
+        height, width = true_gloss.shape
         intrinsics = np.array([[focal_x, 0, width / 2], [0, focal_y, height / 2], [0, 0, 1]])
-        # OpenGL's bottom row first to OpenCV's top row first
-        return Photo(image[::-1].copy(), intrinsics, scanner_from_camera, gloss[::-1].copy())
-
-
-def _brightening(exposed: _Exposure, gain: float) -> NDArray[np.uint8]:
-    """(H, W) levels by which highlights brighten the developed picture, noise aside."""
-    levels = np.zeros(exposed.gloss.shape, np.uint8)
-    shine = exposed.gloss * np.float32(gain)
-    where = exposed.mirrors & (shine > 1 / _LEVELS)
-    matt = exposed.albedo[where] * (exposed.light[where] * np.float32(gain))[:, None]
-    both = matt + shine[where][:, None]
-    dark, bright = (_SRGB.take((np.minimum(x, 1) * (_LEVELS - 1) + 0.5).astype(np.uint16)) for x in (matt, both))
-    levels[where] = np.rint((bright.astype(np.float32) - dark).mean(axis=1))
-    return levels
+        return Photo(image, intrinsics, scanner_from_camera, true_gloss)
 
 
 def _window(parameters: CameraParameters) -> Window:
@@ -195,19 +156,15 @@ def _window(parameters: CameraParameters) -> Window:
     return Window(focal_x, focal_y, across.astype(np.float32)[None], up.astype(np.float32)[:, None])
 
 
-def _gain(shots: list[_Exposure]) -> float:
+def _gain(shots: list[Exposure]) -> float:
     """Part of full scale that a white surface square to the full flash at 1 m would fill: (guide number / aperture)^2.
 
     Colours of several photographs are merged, so all shots of a turn share it. The light of the gloss is left out: it
     may clip, as in life.
     """
-    samples = [shot.albedo[::8, ::8].max(axis=2) * shot.light[::8, ::8] for shot in shots]
+    samples = [linear(shot.albedo[::8, ::8].max(axis=2)) * shot.light[::8, ::8] for shot in shots]
     brightness = np.concatenate([sample[sample > 0] for sample in samples])
     lowest, highest = ((GUIDE_NUMBER / aperture) ** 2 for aperture in reversed(APERTURES))
     if not len(brightness):
         return highest
     return float(np.clip(BRIGHT_LEVEL / np.quantile(brightness, BRIGHT_SHARE), lowest, highest))
-
-
-_LINEAR = linear_from_srgb(np.arange(256) / 255).astype(np.float32)
-_SRGB = np.rint(255 * srgb_from_linear(np.arange(_LEVELS) / (_LEVELS - 1))).astype(np.uint8)

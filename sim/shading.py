@@ -5,7 +5,7 @@ All arrays are pictures with the bottom row first. Vectors are in view axes: x r
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -18,6 +18,8 @@ _SHADOW_BIAS = 3e-3
 """Depth by which something must be nearer to the flash to throw a shadow, relative."""
 _DOUBT = np.float32(0.1)
 """Weight of the size of a step, beside its change, in the choice between two."""
+NEIGHBOURS = 2
+"""Rows on either side of a pixel that its light depends on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +34,10 @@ class Window:
     """(1, W) tangent of each pixel centre to the right."""
     up: Image
     """(H, 1) tangent of each pixel centre upward."""
+
+    def part(self, rows: slice) -> Window:
+        """Some rows of it."""
+        return replace(self, up=self.up[rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +61,7 @@ class Light:
 
 
 def flash_light(
-    inverse_depth: Image, seen_by_flash: Image, flash: tuple[float, float], window: Window, gloss: Gloss
+    inverse_depth: Image, seen_by_flash: NDArray[np.bool_], flash: tuple[float, float], window: Window, gloss: Gloss
 ) -> Light:
     """Light a picture by a point flash beside the lens.
 
@@ -92,26 +98,25 @@ def seen_from_flash(
     flash_inverse_depth: Image,
     flash: tuple[float, float],
     window: Window,
-    margin: tuple[int, int],
-) -> Image:
-    """(H, W) 1 where the flash reaches the surface, 0 in its shadow.
+    first: tuple[int, int],
+) -> NDArray[np.bool_]:
+    """(H, W) True where the flash reaches the surface, False in its shadow.
 
     Args:
         inverse_depth: (H, W) 1/z from the lens [1/m].
-        flash_inverse_depth: 1/z from the flash, looking the same way through a window that is larger by the margin on
-            all sides [1/m].
+        flash_inverse_depth: 1/z from the flash, looking the same way through a larger window [1/m].
         flash: position of the flash right of and above the lens [m].
         window: of the picture from the lens.
-        margin: columns and rows [px].
+        first: column and row of that larger window's pixel that looks the same way as the picture's first one.
     """
     height, width = inverse_depth.shape
     # From the flash, which looks the same way, a point has the same depth and is shifted by the parallax.
-    column = np.arange(width, dtype=np.float32) + np.float32(margin[0])
-    row = np.arange(height, dtype=np.float32)[:, None] + np.float32(margin[1])
+    column = np.arange(first[0], first[0] + width, dtype=np.float32)
+    row = np.arange(first[1], first[1] + height, dtype=np.float32)[:, None]
     map_x = column - np.float32(window.focal_x * flash[0]) * inverse_depth
     map_y = row - np.float32(window.focal_y * flash[1]) * inverse_depth
-    nearest = cv2.remap(flash_inverse_depth, map_x, map_y, cv2.INTER_LINEAR)
-    return (nearest <= inverse_depth * np.float32(1 + _SHADOW_BIAS)).astype(np.float32)
+    nearest = np.asarray(cv2.remap(flash_inverse_depth, map_x, map_y, cv2.INTER_LINEAR))
+    return nearest <= inverse_depth * np.float32(1 + _SHADOW_BIAS)
 
 
 def _gradient(inverse_depth: Image, window: Window) -> tuple[Image, Image, Image]:
@@ -127,18 +132,20 @@ def _gradient(inverse_depth: Image, window: Window) -> tuple[Image, Image, Image
 def slope_on_surface(picture: Image, axis: int) -> Image:
     """(H, W) change per pixel, of the steps before and after each pixel the one on the pixel's own surface.
 
-    That is the step that goes on unchanged to the pixel beyond; where neither does, the smaller one.
+    That is the step that goes on unchanged to the pixel beyond; where neither does, the smaller one. A pixel's slope
+    depends on its `NEIGHBOURS` on either side.
     """
-    widths = [(0, 0), (0, 0)]
-    widths[axis] = (2, 2)
-    steps = np.pad(np.diff(picture, axis=axis), widths, mode="edge")
-    doubt = np.abs(np.diff(steps, axis=axis))
-    size = picture.shape[axis]
-    before, after = _part(steps, axis, 1, size), _part(steps, axis, 2, size)
-    doubt_before = _part(doubt, axis, 0, size) + np.abs(before) * _DOUBT
-    doubt_after = _part(doubt, axis, 2, size) + np.abs(after) * _DOUBT
-    return np.asarray(cv2.copyTo(after, (doubt_after < doubt_before).view(np.uint8), before.copy()))
+    steps = np.diff(picture, axis=axis)
+    change = np.abs(np.diff(steps, axis=axis))
+    after_doubt = np.abs(steps) * _DOUBT
+    before_doubt = after_doubt.copy()
+    _part(before_doubt, axis, 1, None)[...] += change
+    _part(after_doubt, axis, 0, -1)[...] += change
+    chosen = _part(after_doubt, axis, 1, None) < _part(before_doubt, axis, 0, -1)
+    before, after = _part(steps, axis, 0, -1), _part(steps, axis, 1, None)
+    inner = np.asarray(cv2.copyTo(after, chosen.view(np.uint8), before.copy()))
+    return np.concatenate([_part(steps, axis, 0, 1), inner, _part(steps, axis, -1, None)], axis)
 
 
-def _part(picture: Image, axis: int, start: int, size: int) -> Image:
-    return picture[start : start + size] if axis == 0 else picture[:, start : start + size]
+def _part(picture: Image, axis: int, start: int, stop: int | None) -> Image:
+    return picture[start:stop] if axis == 0 else picture[:, start:stop]
