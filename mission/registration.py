@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -20,7 +21,7 @@ from sim.parameters import Parameters
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-Points = NDArray[np.float64]
+Points = NDArray[np.floating]
 
 
 class RegistrationParameters(Parameters):
@@ -102,16 +103,20 @@ class _Map:
     """(N, 3) [m]."""
     normals: Points
     """(N, 3) unit normals towards the scanner that saw them."""
-    tree: cKDTree | None = None
 
-    def joined(self, scan: PosedSample, spacing: float) -> _Map:
+    @cached_property
+    def tree(self) -> cKDTree:
+        """Finds the points; of the map of a room's last scan nobody asks for it."""
         from scipy.spatial import cKDTree
 
+        return cKDTree(self.points)
+
+    def joined(self, scan: PosedSample, spacing: float) -> _Map:
         flat = np.isfinite(scan.normals_in_world[:, 0])
         points = np.concatenate([self.points, scan.points_in_world[flat].astype(float)])
         normals = np.concatenate([self.normals, scan.normals_in_world[flat].astype(float)])
         kept = thinned(points, spacing, first=np.arange(len(points)) < len(self.points))  # older scans drift less
-        return _Map(points[kept], normals[kept], cKDTree(points[kept]))
+        return _Map(points[kept], normals[kept])
 
 
 def register(sample: ScanSample, guess: Pose, world: _Map, parameters: RegistrationParameters) -> Registration:
@@ -174,19 +179,25 @@ class _Partners:
     """(K, 3) the scan's points, in the world as the pose has it [m]."""
     normals: Points
     """(K, 3) normals of their partners in the map."""
-    residuals: NDArray[np.float64]
+    residuals: NDArray[np.floating]
     """(K,) distance from the partner's plane, along its normal [m]."""
 
 
 def _partners(points: Points, normals: Points, pose: Pose, world: _Map, reach: float) -> _Partners:
-    assert world.tree is not None
     here, facing = transformed(points, pose), rotated(normals, pose)
-    distance, index = world.tree.query(here, distance_upper_bound=reach)
+    distance, index = world.tree.query(here, distance_upper_bound=reach, workers=-1)
     met = np.flatnonzero(np.isfinite(distance))
     partner = index[met]
-    met, partner = (a[np.sum(facing[met] * world.normals[partner], axis=1) > 0.85] for a in (met, partner))
-    offsets = here[met] - world.points[partner]
-    return _Partners(here[met], world.normals[partner], np.sum(offsets * world.normals[partner], axis=1))
+    alike = _dot(facing[met], world.normals[partner]) > 0.85
+    met, partner = met[alike], partner[alike]
+    at, across = here[met], world.normals[partner]
+    return _Partners(at, across, _dot(at - world.points[partner], across))
+
+
+def _dot(a: Points, b: Points) -> NDArray[np.floating]:
+    """(N,) products of vectors (N, 3)."""
+    product = a * b
+    return product[:, 0] + product[:, 1] + product[:, 2]
 
 
 def _step(partners: _Partners, reach: float, *, final: bool) -> Pose:

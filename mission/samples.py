@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from mission.rigid import Pose, rotated, transformed
+from sim.bands import bands
 from sim.parameters import Parameters
 
 if TYPE_CHECKING:
@@ -90,14 +93,15 @@ def sample_scan(scan: Scan, parameters: SampleParameters | None = None) -> ScanS
     ranges = np.ascontiguousarray(scan.ranges[::rows, ::columns])
 
     smooth, normals = _planes(ranges, elevations, azimuths, parameters)
-    seen = np.isfinite(ranges) & (ranges < parameters.max_range)
-    flat = np.isfinite(smooth)[seen]
-    directions = _directions(elevations, azimuths)[seen]
-    points = directions * np.where(flat, smooth[seen], ranges[seen])[:, None]
+    seen = np.flatnonzero(np.isfinite(ranges) & (ranges < parameters.max_range))
+    plane = smooth.ravel()[seen]
+    flat = np.isfinite(plane)
+    where = np.where(flat, plane, ranges.ravel()[seen])
+    points = np.stack([axis.ravel()[seen] * where for axis in _directions(elevations, azimuths)], axis=1)
     kept = thinned(points, parameters.spacing, first=flat)
     return ScanSample(
         points=points[kept].astype(np.float32),
-        normals=normals[seen][kept].astype(np.float32),
+        normals=normals.reshape(-1, 3)[seen[kept]].astype(np.float32),
         ranges=ranges,
         elevations=elevations,
         azimuths=azimuths,
@@ -106,24 +110,30 @@ def sample_scan(scan: Scan, parameters: SampleParameters | None = None) -> ScanS
 
 def thinned(points: NDArray[np.floating], spacing: float, *, first: NDArray[np.bool_]) -> NDArray[np.intp]:
     """Ascending indices of one point a cube of side `spacing`: the earliest, but one of `first` where there is any."""
-    if len(points) == 0:
+    count = len(points)
+    if count == 0:
         return np.zeros(0, np.intp)
-    cube = np.floor(points / spacing).astype(np.int64)
-    cube -= cube.min(axis=0)
-    size = cube.max(axis=0) + 1
-    key = (cube[:, 0] * size[1] + cube[:, 1]) * size[2] + cube[:, 2]
-    order = np.concatenate([np.flatnonzero(first), np.flatnonzero(~first)])
-    return np.sort(order[np.unique(key[order], return_index=True)[1]])
+    key = np.zeros(count, np.int64)
+    for axis in points.T:
+        cube = np.floor(axis / spacing).astype(np.int64)
+        cube -= cube.min()
+        key *= cube.max() + 1
+        key += cube
+    order = np.argsort(key)
+    key = key[order]
+    cubes = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
+    rank = np.arange(count) + count * ~first
+    return np.sort(np.minimum.reduceat(rank[order], cubes) % count)
 
 
 def _stride(angles: NDArray[np.floating], step: float) -> int:
     return max(1, int(round(step / abs(float(angles[1] - angles[0])))))
 
 
-def _directions(elevations: NDArray[np.float64], azimuths: NDArray[np.float64]) -> Image:
-    """(E, A, 3) unit vectors of the beams."""
-    e, a = np.meshgrid(elevations, azimuths, indexing="ij")
-    return np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)], axis=-1)
+def _directions(elevations: NDArray[np.float64], azimuths: NDArray[np.float64]) -> tuple[Image, Image, Image]:
+    """Unit vectors of the beams: three coordinates (E, A)."""
+    level, up = np.cos(elevations)[:, None], np.sin(elevations)[:, None]
+    return level * np.cos(azimuths), level * np.sin(azimuths), np.repeat(up, len(azimuths), axis=1)
 
 
 def _planes(
@@ -138,13 +148,35 @@ def _planes(
     equations depend on the pattern alone (Badino et al., Fast and accurate computation of surface normals from range
     images, ICRA 2011). All is done in the frame of the beam's own azimuth, where they depend on the row alone.
     """
-    from scipy.ndimage import correlate1d
-
     pitch = abs(float(azimuths[1] - azimuths[0]))
     half = max(1, int(round(parameters.window / pitch / 2)))
     full_turn = abs(len(azimuths) * pitch - 2 * np.pi) < 1.5 * pitch
     around: NDArray[np.float64] = pitch * np.arange(-half, half + 1, dtype=np.float64)
-    ones = np.ones(2 * half + 1)
+    solver = _inverse_normal_matrices(elevations, around)
+    smooth, normals = np.empty(ranges.shape), np.empty((*ranges.shape, 3))
+
+    def fit(rows: slice) -> None:
+        near = slice(max(rows.start - half, 0), rows.stop + half)
+        inner = slice(rows.start - near.start, rows.stop - near.start)
+        sums = [image[inner] for image in _window_sums(ranges[near], elevations[near], around, full_turn=full_turn)]
+        smooth[rows], slopes = _fitted(sums, solver[rows], ranges[rows], elevations[rows], parameters, len(around))
+        x, y, z = slopes
+        c, s = np.cos(azimuths), np.sin(azimuths)
+        for axis, component in enumerate((c * x - s * y, s * x + c * y, z)):
+            normals[rows, :, axis] = component
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(fit, bands(ranges.shape)))
+    return smooth, normals
+
+
+def _window_sums(
+    ranges: NDArray[np.float32], elevations: NDArray[np.float64], around: NDArray[np.float64], *, full_turn: bool
+) -> list[Image]:
+    """Sums over the window of each beam: of inverse range x direction, of its square, and the number of returns."""
+    from scipy.ndimage import correlate1d
+
+    ones = np.ones(len(around))
 
     def windowed(image: Image, weights: NDArray[np.float64]) -> Image:
         rows = correlate1d(image, ones, axis=0, mode="constant")
@@ -152,29 +184,36 @@ def _planes(
 
     inverse = np.nan_to_num(1 / ranges.astype(float), nan=0.0)
     level = inverse * np.cos(elevations)[:, None]
-    right = np.stack(
-        [
-            windowed(level, np.cos(around)),
-            windowed(level, np.sin(around)),
-            windowed(inverse * np.sin(elevations)[:, None], ones),
-        ]
-    )
-    whole = windowed((inverse > 0).astype(float), ones) > len(ones) ** 2 - 0.5
-    solver = _inverse_normal_matrices(elevations, around)
-    slopes = np.stack([sum(solver[:, k, i, None] * right[i] for i in range(3)) for k in range(3)])
+    return [
+        windowed(level, np.cos(around)),
+        windowed(level, np.sin(around)),
+        windowed(inverse * np.sin(elevations)[:, None], ones),
+        windowed(inverse**2, ones),
+        windowed((inverse > 0).astype(float), ones),
+    ]
 
-    residual = windowed(inverse**2, ones) - np.sum(slopes * right, axis=0)
-    sigma = np.sqrt(np.maximum(residual, 0)) / len(ones)
+
+def _fitted(
+    sums: list[Image],
+    solver: Image,
+    ranges: NDArray[np.float32],
+    elevations: NDArray[np.float64],
+    parameters: SampleParameters,
+    side: int,
+) -> tuple[Image, list[Image]]:
+    """Ranges of the planes, and their normals in the frame of each beam's azimuth; NaN where no plane fits."""
+    *right, squares, returns = sums
+    slopes = [sum(solver[:, k, i, None] * right[i] for i in range(3)) for k in range(3)]
+    residual = squares - (slopes[0] * right[0] + slopes[1] * right[1] + slopes[2] * right[2])
+    sigma = np.sqrt(np.maximum(residual, 0)) / side
     fitted = slopes[0] * np.cos(elevations)[:, None] + slopes[2] * np.sin(elevations)[:, None]
-    length = np.sqrt(np.sum(slopes**2, axis=0))
+    length = np.sqrt(slopes[0] ** 2 + slopes[1] ** 2 + slopes[2] ** 2)
     with np.errstate(divide="ignore", invalid="ignore"):
         smooth = 1 / fitted
-        flat = whole & (sigma * smooth**2 < parameters.roughness) & (np.abs(smooth - ranges) < 4 * parameters.roughness)
-        flat &= fitted > np.cos(parameters.max_incidence) * length
-        x, y, z = -slopes / length
-    c, s = np.cos(azimuths), np.sin(azimuths)
-    normals = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
-    return np.where(flat, smooth, np.nan), np.where(flat[..., None], normals, np.nan)
+        flat = (sigma * smooth**2 < parameters.roughness) & (np.abs(smooth - ranges) < 4 * parameters.roughness)
+        flat &= (returns > side**2 - 0.5) & (fitted > np.cos(parameters.max_incidence) * length)
+        length[~flat] = np.nan
+        return np.where(flat, smooth, np.nan), [-slope / length for slope in slopes]
 
 
 def _inverse_normal_matrices(elevations: NDArray[np.float64], around: NDArray[np.float64]) -> Image:
