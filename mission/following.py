@@ -122,13 +122,16 @@ def restrained(
     Args:
         obstacles_in_base: (N, 2) readings of the Hokuyos [m].
     """
-    now = gap_to_body(obstacles_in_base, footprint)
+    # Turning keeps a reading's distance from the base's middle: so far away nothing comes within the guard.
+    reach = footprint.half_diagonal + parameters.guard + abs(command.speed) * parameters.foresight
+    obstacles = obstacles_in_base[np.hypot(*obstacles_in_base.T) < reach + 0.01]
+    now = gap_to_body(obstacles, footprint)
     times = np.arange(parameters.tick, parameters.foresight + 1e-9, parameters.tick)
     for share in (1.0, 0.5, 0.25):
         speed, turn_rate = share * command.speed, share * command.turn_rate
         inside = np.zeros(len(now), dtype=np.bool_)
         for time in times:
-            gap = gap_to_body(_seen_after(obstacles_in_base, speed, turn_rate, time), footprint)
+            gap = gap_to_body(_seen_after(obstacles, speed, turn_rate, time), footprint)
             inside |= (gap < parameters.guard) & (gap < now - 0.005)
         if inside.sum() < parameters.readings:
             return Command(speed, turn_rate, command.target)

@@ -29,7 +29,6 @@ from mission.events import (
     Structured,
 )
 from mission.explored_room import ExploredRoom
-from mission.joints import opening
 from mission.localisation import localise
 from mission.memory import peak_memory
 from mission.registration import Registration
@@ -43,7 +42,6 @@ from sim.scan import Scan
 
 if TYPE_CHECKING:
     from mission.mopad import Mopad
-    from sim.door_truth import DoorTruth
 
 MAX_DETOURS = 3
 """So many ways in a row may end before their goal; then the room is done with what is there."""
@@ -59,8 +57,8 @@ _COSTED = {Planned, DoorsEvaluated, MissionFinished}
 class Scene(Protocol):
     """What the surveyor needs of a scene: truth for its events."""
 
-    def true_doors(self) -> tuple[DoorTruth, ...]:
-        """As they stand now."""
+    def true_openings(self) -> NDArray[np.float64]:
+        """(D,) how far its doors stand open now [rad or m]."""
 
 
 class Surveyor:
@@ -249,11 +247,11 @@ class Surveyor:
     def _drove(self, room: ExploredRoom, path: NDArray[np.float64], floor_height: float) -> Drove:
         mopad, navigation = self._mopad, self._config.navigation
         truth: list[Pose] = []
-        angles: list[list[float]] = []
+        angles: list[NDArray[np.float64]] = []
 
         def watch() -> None:
             truth.append(mopad.robot.true_world_from_base)
-            angles.append([opening(door) for door in self._scene.true_doors()])
+            angles.append(self._scene.true_openings())
 
         def measure() -> list[LaserScan]:
             mopad.meet_obstacles(driving=True)

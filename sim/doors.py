@@ -81,6 +81,11 @@ def measure_door(model: mujoco.MjModel, data: mujoco.MjData, door: Door) -> Door
     return DoorTruth(door.name, kind, names, door.corners, door.normal, door.outlines, leaves)
 
 
+def measure_opening(model: mujoco.MjModel, data: mujoco.MjData, door: Door) -> float:
+    """How far a door stands open: its wider leaf [rad], or its way along the slide [m]."""
+    return max(abs(_change(model, data, one)) for one in door.leaves)
+
+
 def put_doors(model: mujoco.MjModel, data: mujoco.MjData, doors: Sequence[Door], openings: Mapping[str, float]) -> None:
     """Open doors as asked and wedge all of them where they then stand.
 
@@ -151,14 +156,23 @@ def _wedge(model: mujoco.MjModel, data: mujoco.MjData, joint: int) -> None:
 
 def _measure_leaf(model: mujoco.MjModel, data: mujoco.MjData, one: ClosedLeaf) -> LeafTruth:
     leaf = one.leaf
-    value = float(data.qpos[model.jnt_qposadr[leaf.joint]])
-    corners = leaf.corners_at(value)
-    change = value - one.closed
+    corners = leaf.corners_at(_value(model, data, one))
+    change = _change(model, data, one)
     if leaf.kind == "sliding":
         return LeafTruth(leaf.name, np.nan, abs(change), leaf.axis * one.sign, corners)
-    change = (change + np.pi) % (2 * np.pi) - np.pi
     swing = _opening_direction(one) * (-1.0 if change * one.sign < -_CLEARLY_OPEN else 1.0)
     return LeafTruth(leaf.name, abs(change), np.nan, swing, corners)
+
+
+def _value(model: mujoco.MjModel, data: mujoco.MjData, one: ClosedLeaf) -> float:
+    """The position of a leaf's joint [rad or m]."""
+    return float(data.qpos[model.jnt_qposadr[one.leaf.joint]])
+
+
+def _change(model: mujoco.MjModel, data: mujoco.MjData, one: ClosedLeaf) -> float:
+    """The way of a leaf's joint from where it is closed [rad, within half a turn, or m]."""
+    change = _value(model, data, one) - one.closed
+    return change if one.leaf.kind == "sliding" else (change + np.pi) % (2 * np.pi) - np.pi
 
 
 def _opening_direction(one: ClosedLeaf) -> np.ndarray:

@@ -32,7 +32,7 @@ class Robot:
     def __init__(self, scene: Scene, parameters: RobotParameters, rng: np.random.Generator):
         self._model, self._data, self._prefix = scene.model, scene.data, scene.robot_prefix
         self.parameters = parameters
-        self._bodies = scene.robot_bodies
+        self._own = np.isin(self._model.geom_bodyid, sorted(scene.robot_bodies))
         self._base = self._model.body(f"{self._prefix}base").id
         self._left = [self._model.actuator(self._prefix + name).id for name in _LEFT]
         self._right = [self._model.actuator(self._prefix + name).id for name in _RIGHT]
@@ -126,7 +126,7 @@ class Robot:
         drawn_in = np.round(255 * srgb_from_linear(materials_of(self._model).colour))
         base_from_world = np.linalg.inv(self.true_world_from_base)
         count = 0
-        for geom in np.flatnonzero(np.isin(self._model.geom_bodyid, sorted(self._bodies))):
+        for geom in np.flatnonzero(self._own):
             if self._model.geom_group[geom] >= VISUAL_GROUPS:
                 continue
             points, faces = triangulate(self._model, int(geom))
@@ -149,12 +149,13 @@ class Robot:
 
     def _touching(self) -> set[int]:
         """Geoms of the scene that the robot touches other than from above."""
-        touching = set()
-        for contact in self._data.contact:
-            mine = [int(self._model.geom_bodyid[geom]) in self._bodies for geom in contact.geom]
-            if mine[0] != mine[1] and contact.dist <= 0 and abs(contact.frame[2]) < _STANDING:
-                touching.add(int(contact.geom[0] if mine[1] else contact.geom[1]))
-        return touching
+        contacts = self._data.contact
+        beside = (contacts.dist <= 0) & (np.abs(contacts.frame[:, 2]) < _STANDING)
+        if not beside.any():
+            return set()
+        geoms = contacts.geom[beside]
+        mine = self._own[geoms]
+        return set(geoms[~mine & mine[:, ::-1]].tolist())
 
     def _wheel_angles(self) -> np.ndarray:
         return self._data.qpos[self._encoders].copy()

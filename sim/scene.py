@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 import assets
-from sim.doors import Door, DoorTruth, find_doors, measure_door, put_doors
+from sim.doors import Door, DoorTruth, find_doors, measure_door, measure_opening, put_doors
 from sim.errors import SimError
 from sim.leaves import bodies_below
 from sim.obstacles import Obstacle, Obstacles, add_obstacles, obstacle_bodies
@@ -65,6 +65,10 @@ class Scene:
     def true_doors(self) -> tuple[DoorTruth, ...]:
         """The doors as they stand now: the truth, for the evaluation only."""
         return tuple(measure_door(self.model, self.data, door) for door in self.doors)
+
+    def true_openings(self) -> np.ndarray:
+        """(D,) how far each of `doors` stands open now [rad or m]: the truth, for the record only."""
+        return np.array([measure_opening(self.model, self.data, door) for door in self.doors])
 
 
 def load_scene(
