@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 
 import mujoco
 import numpy as np
@@ -44,6 +45,7 @@ class Hokuyo:
         self.parameters = parameters or HokuyoParameters()
         self._model = model
         self._visible = visible_geoms(model, hidden_bodies)
+        self._loose = _loose_bodies(model, self._visible)
         self._middles, self._halves = model.geom_aabb[:, :3].copy(), model.geom_aabb[:, 3:].copy()
         self._beams = np.column_stack([np.cos(self.angles), np.sin(self.angles), np.zeros(len(self.angles))])
 
@@ -82,7 +84,8 @@ class Hokuyo:
         hit, ranges = np.empty(count, np.int32), np.empty(count)
         reach = 2 * self.parameters.max_range
         shown = self._visible & self._cut(data, world_from_laser)
-        with showing(self._model, shown):  # the only way to hide several bodies and glass from a ray
+        # the only way to hide several bodies and glass from a ray
+        with showing(self._model, shown), _unbounded(self._model, self._loose):
             mujoco.mj_multiRay(
                 self._model, data, origin, beams_in_world, groups, True, -1, hit, ranges, None, count, reach
             )
@@ -94,3 +97,23 @@ class Hokuyo:
         up_in_geom = up @ data.geom_xmat.reshape(-1, 3, 3)
         height = (data.geom_xpos - origin) @ up + np.sum(up_in_geom * self._middles, axis=1)
         return abs(height) <= np.sum(abs(up_in_geom) * self._halves, axis=1) + _TOUCH
+
+
+def _loose_bodies(model: mujoco.MjModel, visible: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Bodies with visible geoms outside their bounding volume, which holds those alone that collide."""
+    bounded = np.zeros(model.ngeom, np.bool_)
+    for first, count in zip(model.body_bvhadr, model.body_bvhnum, strict=True):
+        nodes = model.bvh_nodeid[first : first + count]
+        bounded[nodes[nodes >= 0]] = True
+    return np.unique(model.geom_bodyid[visible & ~bounded])
+
+
+@contextmanager
+def _unbounded(model: mujoco.MjModel, bodies: NDArray[np.intp]) -> Iterator[None]:
+    """Have rays try every geom of these bodies for the length of a `with` block."""
+    trees = model.body_bvhadr[bodies]
+    model.body_bvhadr[bodies] = -1
+    try:
+        yield
+    finally:
+        model.body_bvhadr[bodies] = trees

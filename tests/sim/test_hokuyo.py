@@ -75,3 +75,25 @@ def test_noise_is_one_centimetre_then_one_per_cent(world, distance, sigma):
     ranges = np.concatenate([sweep(scene, parameters=HokuyoParameters(), seed=k).ranges for k in range(10)])
     assert (ranges.astype(float) - distance).std() == pytest.approx(sigma, rel=0.05)
     assert np.allclose(ranges * 1000, np.rint(ranges * 1000), atol=1e-3)  # whole millimetres
+
+
+def test_it_sees_what_nothing_can_bump_into(world):
+    # A curtain 2 m ahead that takes no part in collisions, on a body whose solid part is 3 m to the left.
+    curtain = '<geom type="box" size=".01 1 1" pos="2.01 0 0" contype="0" conaffinity="0"/>'
+    scene = world(f'<body>{curtain}<geom size=".1" pos="0 3 0"/><geom size=".1" pos="0 3 1"/></body>')
+    trees = scene[0].body_bvhadr.copy()
+    ranges = sweep(scene).ranges
+    assert ranges[340] == pytest.approx(2, abs=1e-6)
+    assert ranges[340 + 256] == pytest.approx(2.9, abs=1e-6)
+    assert (scene[0].body_bvhadr == trees).all()  # and the model is as it was
+
+
+def test_a_tilted_laser_sees_what_its_plane_meets_and_nothing_else(world):
+    tilt = np.radians(
+        30
+    )  # nose down: 1 m ahead the plane is tan(30 deg) = 0.577 m lower, after 1/cos(30 deg) = 1.155 m
+    base = np.eye(4)
+    base[:3, :3] = [[np.cos(tilt), 0, np.sin(tilt)], [0, 1, 0], [-np.sin(tilt), 0, np.cos(tilt)]]
+    low, level = '<geom type="box" size=".1 2 .1" pos="1.1 0 -.6"/>', '<geom type="box" size=".1 2 .1" pos="1.1 0 0"/>'
+    assert sweep(world(low), base=base).ranges[340] == pytest.approx(1.155, abs=1e-3)
+    assert np.isnan(sweep(world(level), base=base).ranges[340])
