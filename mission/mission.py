@@ -58,7 +58,7 @@ class Mission:
         self._stopwatch = stopwatch or Stopwatch()
         self._mopad = Mopad(scene, config, seed=seed, earlier=earlier)
         self._footprint = Footprint(*self._mopad.robot.footprint)
-        self._surveyor = Surveyor(scene, self._mopad, config, self._stopwatch, seed=seed)
+        self._surveyor = Surveyor(self._mopad, config, self._stopwatch, seed=seed)
         self._building = ExploredBuilding(config.links)
         self._traveller = Traveller(self._mopad, self._building, self._surveyor, self._footprint, config.navigation)
         self._completion = Completion(

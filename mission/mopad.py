@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mission.config import MissionConfig
 from mission.resumption import Earlier
@@ -83,6 +84,11 @@ class Mopad:
     def true_world_from_scanner(self) -> Pose:
         """Where the scanner is."""
         return self.robot.true_world_from_base @ self.robot.base_from_scanner
+
+    @property
+    def true_openings(self) -> NDArray[np.float64]:
+        """(D,) how far each door of the scene stands open [rad or m]."""
+        return self._scene.true_openings()
 
     def believe(self, world_from_base: Pose) -> None:
         """Correct the odometry: the robot is there now."""

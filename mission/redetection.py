@@ -61,7 +61,7 @@ class Redetection:
         self._started, self._config = started, config
         self._mopad = RecordedMopad(started.base_from_scanner)
         mopad, stopwatch = cast(Any, self._mopad), stopwatch or Stopwatch()
-        self._surveyor = Surveyor(self, mopad, config, stopwatch, seed=started.seed)
+        self._surveyor = Surveyor(mopad, config, stopwatch, seed=started.seed)
         self._building = ExploredBuilding(config.links)
         self._completion = Completion(
             self._building,

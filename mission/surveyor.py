@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Iterator
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,21 +54,14 @@ _COSTED = {Planned, DoorsEvaluated, MissionFinished}
 """Events that tell what the mission took so far."""
 
 
-class Scene(Protocol):
-    """What the surveyor needs of a scene: truth for its events."""
-
-    def true_openings(self) -> NDArray[np.float64]:
-        """(D,) how far its doors stand open now [rad or m]."""
-
-
 class Surveyor:
     """Does what a room needs with the robot, and tells of it in events.
 
     The simulator's truth (poses, joints) goes into events only: no stage reads it.
     """
 
-    def __init__(self, scene: Scene, mopad: Mopad, config: MissionConfig, stopwatch: Stopwatch, *, seed: int) -> None:
-        self._scene, self._mopad, self._config, self._stopwatch = scene, mopad, config, stopwatch
+    def __init__(self, mopad: Mopad, config: MissionConfig, stopwatch: Stopwatch, *, seed: int) -> None:
+        self._mopad, self._config, self._stopwatch = mopad, config, stopwatch
         self._seed = seed
         self._steps = 0
         self._scans = 0
@@ -251,7 +244,7 @@ class Surveyor:
 
         def watch() -> None:
             truth.append(mopad.robot.true_world_from_base)
-            angles.append(self._scene.true_openings())
+            angles.append(mopad.true_openings)
 
         def measure() -> list[LaserScan]:
             mopad.meet_obstacles(driving=True)

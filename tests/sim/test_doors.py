@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from sim.doors import DoorTruth, find_doors, put_doors, true_doors
+from sim.doors import DoorTruth, find_doors, measure_opening, put_doors, true_doors
 from sim.errors import SimError
 
 
@@ -131,13 +131,15 @@ def test_an_unknown_door_lists_those_there_are() -> None:
         put_doors(model, data, find_doors(model, data), {"gate": 0.1})
 
 
-def test_two_leaves_that_fill_one_opening_are_one_double_door() -> None:
-    leaves = """
+PAIR = """
     <body name="west" pos="-0.75 0 0"><joint name="w" axis="0 0 1" range="-100 0"/>
       <geom type="box" pos="0.374 0.03 1.05" size="0.374 0.02 1.045"/></body>
     <body name="east" pos="0.75 0 0"><joint name="e" axis="0 0 1" range="0 100"/>
       <geom type="box" pos="-0.374 0.03 1.05" size="0.374 0.02 1.045"/></body>"""
-    model, data = world(leaves, gap=(-0.753, 0.753))
+
+
+def test_two_leaves_that_fill_one_opening_are_one_double_door() -> None:
+    model, data = world(PAIR, gap=(-0.753, 0.753))
     put_doors(model, data, find_doors(model, data), {"east": np.radians(80), "w": np.radians(10)})
 
     door = only(true_doors(model, data))
@@ -146,6 +148,13 @@ def test_two_leaves_that_fill_one_opening_are_one_double_door() -> None:
     np.testing.assert_allclose([np.degrees(leaf.opening_angle) for leaf in door.leaves], [10, 80], atol=1e-3)
     np.testing.assert_allclose(np.ptp(door.corners_in_world[:, 0]), 1.5, atol=1e-4)
     np.testing.assert_allclose([leaf.swing_normal[1] for leaf in door.leaves], [-1, -1], atol=1e-6)
+
+
+def test_a_door_stands_as_far_open_as_its_wider_leaf_whichever_way_the_joint_turns() -> None:
+    model, data = world(PAIR, gap=(-0.753, 0.753))
+    doors = find_doors(model, data)
+    put_doors(model, data, doors, {"east": np.radians(20), "w": np.radians(70)})  # the west leaf's joint goes to -70
+    assert np.degrees(measure_opening(model, data, only(doors))) == pytest.approx(70, abs=1e-3)
 
 
 UNEQUAL = """
@@ -178,6 +187,7 @@ def test_a_sliding_leaf_on_the_wall_s_face_covers_its_opening_when_closed() -> N
 
     assert door.kind == "sliding"
     assert np.isnan(door.leaves[0].opening_angle)
+    assert measure_opening(model, data, only(find_doors(model, data))) == door.leaves[0].opening
     assert door.leaves[0].opening == pytest.approx(0.4, abs=1e-9)
     np.testing.assert_allclose(sorted(door.corners_in_world[:2, 0]), [-0.5, 0.5], atol=1e-6)
     with pytest.raises(SimError, match="slides"):

@@ -61,7 +61,7 @@ def explore(
     seen_cells, coverage, metres, driven, reason = np.zeros(len(cells), bool), [], [], 0.0, ""
     with Mopad(scene, config, seed=seed) as mopad:
         mopad.robot.set_down(world_from_base)
-        surveyor = Surveyor(scene, mopad, config, Stopwatch(), seed=seed)
+        surveyor = Surveyor(mopad, config, Stopwatch(), seed=seed)
         room = ExploredRoom(1, Footprint(*mopad.robot.footprint), config, Registrar(config.registration))
         try:
             for event in surveyor.survey(room, photograph=False):
