@@ -70,8 +70,9 @@ def find_lines(plan: Floats, normals: Floats, parameters: LineParameters) -> lis
     middle = plan.mean(axis=0) if len(plan) else np.zeros(2)
     lines: list[PlanLine] = []
     for heading in _directions(headings, parameters):
+        alike = np.cos(headings - heading) > np.cos(np.deg2rad(6))
         while True:
-            near = np.flatnonzero(free & (np.cos(headings - heading) > np.cos(np.deg2rad(6))))
+            near = np.flatnonzero(free & alike)
             rough = _strongest_offset(plan[near], heading, middle, parameters)
             if rough is None:
                 break

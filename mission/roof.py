@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from mission.by_columns import distinct
+
 Floats = NDArray[np.float64]
 
 _CELL = 0.1
@@ -50,6 +52,6 @@ def _area_of_surface(points: Floats) -> Floats:
     filled[tuple(cell.T)] = True
     surfaces, count = label(filled, np.ones((3, 3, 3)))
     number = surfaces[tuple(cell.T)]
-    column = np.unique(np.column_stack([number, cell[:, :2]]), axis=0)
+    column = distinct(np.column_stack([number, cell[:, :2]]))
     area = np.bincount(column[:, 0], minlength=count + 1).astype(float) * _CELL**2
     return np.asarray(area[number], float)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from mission.by_columns import chosen, gathered
 from mission.errors import MissionError
 from mission.plan_polygon import Loop, within_polygon
 from mission.samples import PosedSample, thinned
@@ -116,15 +117,15 @@ def _covered(points: Floats, ceiling: float, polygon: Floats, parameters: Struct
 
 
 def _merged(scans: Sequence[PosedSample], scanners: Floats, parameters: StructureParameters) -> tuple[Floats, Floats]:
-    """Points and normals (N, 3) of all scans within reach, thinned together."""
-    points = np.concatenate([scan.points_in_world for scan in scans]).astype(float)
-    normals = np.concatenate([scan.normals_in_world for scan in scans]).astype(float)
+    """Points and normals (N, 3) of all scans within reach, thinned together; both by columns."""
+    points = gathered([scan.points_in_world for scan in scans])
+    normals = gathered([scan.normals_in_world for scan in scans])
     near = np.zeros(len(points), bool)
     for x, y, _ in scanners:
         near |= (points[:, 0] - x) ** 2 + (points[:, 1] - y) ** 2 < parameters.reach**2
-    points, normals = points[near], normals[near]
+    points, normals = chosen(points, near), chosen(normals, near)
     kept = thinned(points, parameters.spacing, first=np.isfinite(normals[:, 0]))
-    return points[kept], normals[kept]
+    return chosen(points, kept), chosen(normals, kept)
 
 
 def _floor(points: Floats, normals: Floats, scanners: Floats, parameters: StructureParameters) -> float:

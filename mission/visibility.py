@@ -172,8 +172,8 @@ def _near_directions(
     grid = np.zeros((rows, columns), bool)
     reach = nearest + 0.1
     for other in scans:
-        offset = other.points_in_world - scan.scanner_in_world.astype(np.float32)
-        near = other.points_in_world[np.sum(offset**2, axis=1) < reach**2]
+        x, y, z = (other.points_in_world - scan.scanner_in_world.astype(np.float32)).T
+        near = other.points_in_world[x * x + y * y + z * z < reach**2]
         grid[_direction_cells(scan, near, parameters)] = True
     around = np.concatenate([grid[:, -1:], grid, grid[:, :1]], axis=1)  # azimuth closes
     return binary_dilation(around, np.ones((3, 3), bool))[:, 1:-1]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from detector.room import Room, View, VoxelLabel, Wall
+from mission.by_columns import chosen, distinct, gathered
 from mission.samples import PosedSample
 from mission.structure import Structure
 from mission.visibility import Visibility, VisibilityParameters
@@ -109,13 +110,13 @@ def label_voxels(
         scanner: What took the scans.
     """
     parameters = parameters or VoxelParameters()
-    points = np.concatenate([scan.points_in_world for scan in scans]).astype(float)
-    scanners = np.concatenate([np.broadcast_to(s.scanner_in_world, s.points_in_world.shape) for s in scans])
+    points = gathered([scan.points_in_world for scan in scans])
+    number = np.repeat(np.arange(len(scans)), [len(scan.points_in_world) for scan in scans])
     visibility = Visibility(scans, scanner or ScannerParameters(), parameters.visibility)
     walls = [_wall_patch(wall, parameters) for wall in structure.walls]
     grids = _levels(structure, parameters)
     patches = walls + [patch for _, patch in grids]
-    labels = [_labelled(patch, points, scanners, visibility, parameters) for patch in patches]
+    labels = [_labelled(patch, points, number, visibility, parameters) for patch in patches]
     levels = [
         LevelGrid(patch.corner, patch.u, patch.v, np.where(inside, level_labels, 0).astype(np.uint8))
         for (inside, patch), level_labels in zip(grids, labels[len(walls) :], strict=True)
@@ -172,11 +173,10 @@ class _Patch:
     clearance: float
     """Points farther than this along v do not count [m]."""
 
-    def coordinates(self, points: Floats) -> tuple[Floats, Floats, Floats]:
-        """Of points (N, 3): along u, along v and depth [m]."""
+    def along(self, points: Floats, axis: Floats) -> Floats:
+        """(N,) of points (N, 3) along u, v or the normal, from the corner [m]."""
         x, y, z = (points - self.corner).T
-        along, across, depth = (x * a[0] + y * a[1] + z * a[2] for a in (self.u, self.v, self.normal))
-        return along, across, depth
+        return x * axis[0] + y * axis[1] + z * axis[2]
 
     def centres(self, size: float) -> Floats:
         """(rows, columns, 3) in the world [m]."""
@@ -232,13 +232,14 @@ def _levels(structure: Structure, parameters: VoxelParameters) -> list[tuple[NDA
 
 
 def _labelled(
-    patch: _Patch, points: Floats, scanners: Floats, visibility: Visibility, parameters: VoxelParameters
+    patch: _Patch, points: Floats, number: NDArray[np.int_], visibility: Visibility, parameters: VoxelParameters
 ) -> Labels:
     """(rows, columns) Occupied with a point; else Opening if some scan looked through; else Occluded.
 
     A wall's voxel with points of grazing beams only is Occluded: a few lines of points show no door.
     """
-    occupied, grazed = _filled(patch, points, scanners, parameters)
+    scanners = np.array([scan.scanner_in_world for scan in visibility.scans])
+    occupied, grazed = _filled(patch, points, number, scanners, parameters)
     empty = ~occupied & ~grazed & (patch.areas > 0)
     labels = np.where(occupied, VoxelLabel.OCCUPIED, VoxelLabel.OCCLUDED).astype(np.uint8)
     labels[empty] = np.where(
@@ -248,18 +249,23 @@ def _labelled(
 
 
 def _filled(
-    patch: _Patch, points: Floats, scanners: Floats, parameters: VoxelParameters
+    patch: _Patch, points: Floats, number: NDArray[np.int_], scanners: Floats, parameters: VoxelParameters
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Cells (rows, columns) with a point, and those with points of grazing beams only; (N, 3) where beams began."""
+    """Cells (rows, columns) with a point, and those with points of grazing beams only.
+
+    Point n (N, 3) is of the scan with `number[n]`, whose beams began at that row of `scanners` (S, 3).
+    """
     rows, columns = patch.areas.shape
-    along, across, depth = patch.coordinates(points)
-    near = np.flatnonzero((depth > -patch.behind) & (depth < patch.before) & (across < patch.clearance))
-    cell = np.floor(np.stack([across[near], along[near]]) / parameters.size).astype(int)
-    within = ((cell >= 0) & (cell < [[rows], [columns]])).all(axis=0)
-    near, cell = near[within], cell[:, within]
-    grazing = np.zeros(len(near), bool)
+    depth = patch.along(points, patch.normal)
+    near = np.flatnonzero((depth > -patch.behind) & (depth < patch.before))
+    points, number = chosen(points, near), number[near]
+    across = patch.along(points, patch.v)
+    cell = np.floor(np.stack([across, patch.along(points, patch.u)]) / parameters.size).astype(int)
+    within = ((cell >= 0) & (cell < [[rows], [columns]])).all(axis=0) & (across < patch.clearance)
+    cell = cell[:, within]
+    grazing = np.zeros(cell.shape[1], bool)
     if abs(patch.normal[2]) < 0.5:
-        beams = scanners[near] - points[near]
+        beams = scanners[number[within]] - points[within]
         steepness = np.abs(beams @ patch.normal) / np.sqrt(np.sum(beams**2, axis=1))
         grazing = steepness < np.cos(parameters.max_incidence)
     occupied, met = np.zeros((rows, columns), bool), np.zeros((rows, columns), bool)
@@ -283,12 +289,15 @@ def _clutter(structure: Structure, points: Floats, parameters: VoxelParameters) 
     reach = parameters.level_reach
     high = np.inf if structure.ceiling_height is None else structure.ceiling_height
     within = (points[:, 2] > structure.floor_height + reach) & (points[:, 2] < high - reach)
-    inside = points[within][structure.interior(points[within])]
+    inside = chosen(points, within)
+    inside = chosen(inside, structure.interior(inside))
     for wall in structure.walls:
         patch = _wall_patch(wall, parameters)
-        along, _, depth = patch.coordinates(inside)
-        inside = inside[(depth > patch.before) | (depth < -patch.behind) | (along < 0) | (along > wall.width)]
-    return (np.unique(np.floor(inside / parameters.size), axis=0) + 0.5) * parameters.size
+        along, depth = patch.along(inside, patch.u), patch.along(inside, patch.normal)
+        off = (depth > patch.before) | (depth < -patch.behind) | (along < 0) | (along > wall.width)
+        inside = chosen(inside, off)
+    cells = distinct(np.floor(inside / parameters.size).astype(int)).astype(np.float64)
+    return (cells + 0.5) * parameters.size
 
 
 def _gathered(grids: Sequence[NDArray[Any]], counted: Sequence[NDArray[np.bool_]]) -> NDArray[Any]:

@@ -97,7 +97,8 @@ class WallFinder:
         self.scanners = np.array([scan.scanner_in_world[:2] for scan in visibility.scans])
         vertical = (np.abs(normals[:, 2]) < 0.15) & (points[:, 2] > floor + 0.1)
         self.roof = Roof(points, normals, lowest=floor + parameters.min_top, least_area=parameters.min_roof_area)
-        self.lines = find_lines(points[vertical, :2], normals[vertical, :2], parameters.lines)
+        plan, facing = (np.ascontiguousarray(rows[vertical, :2]) for rows in (points, normals))
+        self.lines = find_lines(plan, facing, parameters.lines)
 
     def outline(self, ceiling: float | None) -> Outline:
         """The room under a ceiling [m], or under the sky.
