@@ -16,10 +16,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from detector.parallel import each
 from mission.candidates import PlanningParameters, ScanCandidate
 from mission.grid import Footprint, OccupancyGrid
 from mission.navigation import NavigationParameters, RoadMap, road_map
@@ -102,7 +104,7 @@ def plan_next_scan(
     covered = survey.coverage >= parameters.target_coverage
     chooser = planner(parameters, grid=grid, room=room, tried_in_world=tried, covered=covered, seed=seed)
     judge = _Judge(survey, tried, mount, parameters)
-    candidates = _scored([judge.candidate(roads, int(point)) for point in offered], chooser)
+    candidates = _scored(each(partial(judge.candidate, roads), offered.tolist()), chooser)
     best = max(range(len(candidates)), key=lambda k: candidates[k].score, default=None)
     stop_reason = _stop_reason(candidates, best, chooser, covered=covered)
     if stop_reason is None and len(tried) >= parameters.max_scans:

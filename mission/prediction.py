@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from mission.by_columns import chosen, gathered
 from sim.parameters import Parameters
 from sim.scan import ScannerParameters
 
@@ -78,8 +79,9 @@ def find_obstacles(
     from scipy.spatial import cKDTree
 
     low, high = cells.centres.min(axis=0), cells.centres.max(axis=0)
-    inside = ((points_in_world >= low) & (points_in_world <= high)).all(axis=1)
-    index = np.floor((points_in_world[inside] - low) / view.cube).astype(np.int64)
+    points = gathered([points_in_world])
+    inside = ((points >= low) & (points <= high)).all(axis=1)
+    index = np.floor((chosen(points, inside) - low) / view.cube).astype(np.int64)
     size = tuple(np.floor((high - low) / view.cube).astype(np.int64) + 1)
     key = np.unique(np.ravel_multi_index(tuple(index.T), size))
     centres = low + (np.stack(np.unravel_index(key, size), axis=1) + 0.5) * view.cube
@@ -89,7 +91,7 @@ def find_obstacles(
     off_surface = ((centres[near] - cells.centres[cell]) * cells.normals[cell]).sum(axis=1)
     on_surface = np.zeros(len(centres), dtype=np.bool_)
     on_surface[near] = abs(off_surface) <= view.cube
-    return Obstacles(cubes=centres[~on_surface], walls=np.empty((0, 2)) if walls is None else walls)
+    return Obstacles(cubes=chosen(centres, ~on_surface), walls=np.empty((0, 2)) if walls is None else walls)
 
 
 def prospect(
@@ -110,9 +112,10 @@ def prospect(
     seen &= -towards[:, 2] >= np.sin(scanner.lowest_elevation)
     seen &= -towards[:, 2] <= np.sin(scanner.highest_elevation)
     at = np.flatnonzero(seen)
-    hidden = _behind_cubes(cells.centres[at] - scanner_in_world, obstacles.cubes - scanner_in_world, view)
-    hidden |= _behind_walls(scanner_in_world[:2], cells.centres[at, :2], obstacles.walls)
-    seen[at[hidden]] = False
+    at = at[~_behind_walls(scanner_in_world[:2], chosen(cells.centres, at)[:, :2], obstacles.walls)]
+    at = at[~_behind_cubes(chosen(cells.centres, at) - scanner_in_world, obstacles.cubes - scanner_in_world, view)]
+    seen = np.zeros(len(seen), dtype=np.bool_)
+    seen[at] = True
     return Prospect(seen=seen, towards=towards, cosine=cosine)
 
 
@@ -164,7 +167,9 @@ def _behind_walls(
     cross = ray[:, 0, None] * side[:, 1] - ray[:, 1, None] * side[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):  # parallel: no crossing
         t = (first[:, 0] * side[:, 1] - first[:, 1] * side[:, 0]) / cross
-        s = (first[:, 0] * ray[:, 1, None] - first[:, 1] * ray[:, 0, None]) / cross
     before = 1 - _WALL_TOUCH / np.maximum(np.hypot(ray[:, 0], ray[:, 1]), 1e-9)
-    hides: NDArray[np.bool_] = (s >= 0) & (s <= 1) & (t > 0) & (t < before[:, None])
-    return np.any(hides, axis=1)
+    cell, other = np.nonzero((t > 0) & (t < before[:, None]))
+    s = (first[other, 0] * ray[cell, 1] - first[other, 1] * ray[cell, 0]) / cross[cell, other]
+    hidden = np.zeros(len(cells), dtype=np.bool_)
+    hidden[cell[(s >= 0) & (s <= 1)]] = True
+    return hidden

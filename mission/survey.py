@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from detector.room import VoxelLabel
+from mission.by_columns import gathered
 from mission.prediction import Cells, Prospect, ScannerView, find_obstacles, prospect
 from sim.parameters import Parameters
 from sim.scan import ScannerParameters
@@ -82,7 +83,7 @@ class Survey:
         scanner: ScannerParameters,
         parameters: SurveyParameters,
     ) -> None:
-        self._cells = Cells(np.asarray(voxels.cells_in_world, np.float64), np.asarray(voxels.normals, np.float64))
+        self._cells = Cells(gathered([voxels.cells_in_world]), gathered([voxels.normals]))
         self._areas = np.asarray(voxels.areas, np.float64)
         self._scanner, self._parameters, self._floor_height = scanner, parameters, floor_height
         self._obstacles = find_obstacles(points_in_world, self._cells, walls=room, view=parameters.view)
@@ -102,7 +103,7 @@ class Survey:
         """What a scan from a (3,) place would bring."""
         view = self._prospect(scanner_in_world)
         known = self._area(view.seen & self._occupied)
-        gain = self._area(view.seen & self._occluded & ~self._disappointed(view))
+        gain = self._area(self._promising(view))
         well = self._well(view) & ~self._well_seen & self._occupied & self._walls
         new_side = [self._columns_seen(view, side) & self._new_columns[side] for side in (1, -1)]
         return Preview(
@@ -135,16 +136,17 @@ class Survey:
             np.bincount(self._column[seen], self._areas[self._doorways][seen], len(self._columns)) >= self._columns / 2
         )
 
-    def _disappointed(self, view: Prospect) -> NDArray[np.bool_]:
-        """(M,) cells that an earlier scan from much the same direction should have seen, and did not.
+    def _promising(self, view: Prospect) -> NDArray[np.bool_]:
+        """(M,) occluded cells in view, but those that a scan from much the same direction should have seen already.
 
         They are behind something that the points do not show, such as the back of a cabinet against the wall.
         """
         same = np.cos(self._parameters.same_view_angle)
-        return self._any(
-            earlier.seen & ((earlier.towards * view.towards).sum(axis=1) > same) & self._occluded
-            for earlier in self._earlier
-        )
+        promising = view.seen & self._occluded
+        for earlier in self._earlier:
+            again = np.flatnonzero(promising & earlier.seen)
+            promising[again[(earlier.towards[again] * view.towards[again]).sum(axis=1) > same]] = False
+        return promising
 
     def _find_doorways(self, openings: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Indices (D,) of opening cells above an open spot near the floor, and the column (D,) that each is in.
