@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from typing import TypeVar
+from typing import Any, Generic, TypeVar
+from weakref import ref
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -25,17 +27,42 @@ def each(function: Callable[[Item], Result], items: Iterable[Item]) -> list[Resu
     work that is under way, and there are never more threads at work than processors. numpy and OpenCV let go of the
     interpreter while they compute.
     """
-    items = list(items)
-    futures = [_POOL.submit(function, item) for item in items] if processors() > 1 else []
-    results = {}
+    work = _Work(function, items)
+    helpers = min(processors() - 1, len(work.waiting) - 1)
+    helping = [_POOL.submit(_help, ref(work)) for _ in range(helpers)]
     try:
-        for i in reversed(range(len(items))):
-            begun = bool(futures) and not futures[i].cancel()
-            results[i] = futures[i].result() if begun else function(items[i])
+        work.do(work.waiting.pop)
+        for helper in helping:
+            if not helper.cancel():
+                helper.result()
     finally:
-        for future in futures:
-            future.cancel()
-    return [results[i] for i in range(len(items))]
+        work.waiting.clear()
+    return [work.results[i] for i in range(len(work.results))]
+
+
+class _Work(Generic[Item, Result]):
+    """What one call is about: the items that nobody has begun, and the results of the others."""
+
+    def __init__(self, function: Callable[[Item], Result], items: Iterable[Item]) -> None:
+        self._function = function
+        self.waiting = deque(enumerate(items))
+        self.results: dict[int, Result] = {}
+
+    def do(self, take: Callable[[], tuple[int, Item]]) -> None:
+        """Do items, taken one by one from either end, until none is waiting."""
+        while self.waiting:
+            try:
+                i, item = take()
+            except IndexError:  # another thread was faster
+                return
+            self.results[i] = self._function(item)
+
+
+def _help(work: ref[_Work[Any, Any]]) -> None:
+    """Take part in a call, unless it is over: threads come late, and what waits for them must keep no image alive."""
+    called = work()
+    if called is not None:
+        called.do(called.waiting.popleft)
 
 
 def bands(rows: int) -> list[slice]:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import threading
+from functools import partial
 from time import sleep
+from weakref import ref
 
+import numpy as np
 import pytest
 
 from detector.parallel import each, processors
@@ -35,3 +38,19 @@ def test_an_error_of_one_item_comes_out_and_the_next_call_works() -> None:
     with pytest.raises(ZeroDivisionError):
         each(lambda i: 1 // i, range(5))
     assert each(abs, [-1, -2]) == [1, 2] and each(abs, []) == []
+
+
+def test_a_call_keeps_nothing_of_what_it_worked_on_though_all_threads_are_busy_elsewhere() -> None:
+    looked = threading.Event()
+
+    def outer(i: int) -> bool:
+        if i == 0:  # the front: where there is a second thread, it is busy until the caller has looked
+            return looked.wait(10)
+        image = np.zeros(10)
+        kept = ref(image)
+        each(partial(np.take, image), range(3))
+        del image
+        looked.set()
+        return kept() is None
+
+    assert each(outer, range(2)) == [True, True]
