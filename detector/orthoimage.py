@@ -95,6 +95,7 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
     reach = (depths < LEAF_REACH) & (depths >= -parameters.face_tolerance)
     reach &= (u > -LEAF_REACH) & (u < wall.width + LEAF_REACH) & (v > floor + 0.1)
     beyond = (behind[2] > -LEAF_REACH) & (behind[1] > floor + 0.1)
+    beyond &= (behind[0] > -LEAF_REACH) & (behind[0] < wall.width + LEAF_REACH)
     return WallPoints(
         slab=slab.take(inside, axis=1).T,
         colours=view.colours.take(near, axis=0),
@@ -110,19 +111,24 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
 
 def _near_and_deep(
     points: NDArray[np.float32], wall: Wall, parameters: DetectorParameters
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Indices of the points within the wall's slab, and of those behind its face."""
 
-    def low_ones(start: int) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+    def parts_of(start: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         depth = wall.depths(points[start : start + BLOCK])
-        low = np.flatnonzero(depth < parameters.slab_front)
-        return start + low, depth.take(low)
+        # minus infinity is no depth, and no number is none either: such points are left out
+        near = (depth < parameters.slab_front) & (depth > -parameters.slab_behind)
+        behind = (depth < -parameters.face_tolerance) & (depth > -np.inf)
+        return _numbers(near, start), _numbers(behind, start)
 
-    blocks = each(low_ones, range(0, max(len(points), 1), BLOCK))
-    index, depth = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
-    # minus infinity is no depth, and no number is none either: such points are left out
-    behind = (depth < -parameters.face_tolerance) & (depth > -np.inf)
-    return index[depth > -parameters.slab_behind], index[behind]
+    blocks = each(parts_of, range(0, max(len(points), 1), BLOCK))
+    near, behind = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+    return near, behind
+
+
+def _numbers(chosen: NDArray[np.bool_], start: int) -> NDArray[np.int32]:
+    """Where a mask is true, counted from `start`: in half the memory of numpy's own indices."""
+    return np.flatnonzero(chosen).astype(np.int32) + np.int32(start)
 
 
 def _columns(points: NDArray[np.float32]) -> NDArray[np.float32]:

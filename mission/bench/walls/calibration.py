@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,8 +19,9 @@ from numpy.typing import NDArray
 
 from detector.candidates import Scene
 from detector.confidence import measure
-from detector.detect import detect_wall, look_at
+from detector.detect import judge_wall
 from detector.doors import find_doors
+from detector.looking import look_at_walls
 from detector.metrics import overlap
 from detector.parameters import DetectorParameters
 from detector.result import Candidate, Evidence
@@ -103,11 +105,10 @@ def samples(room: BenchRoom, truths: Mapping[frozenset[str], DoorTruth], given: 
 
 def search(room: Room, wall: Wall, parameters: DetectorParameters) -> tuple[tuple[Candidate, ...], Scene]:
     """Candidates on a wall, the accepted ones first, and the images that they were judged on."""
-    result = detect_wall(room, wall, parameters)
-    floor = float(np.clip(room.floor_height - wall.origin[2], 0, wall.height))
-    face = look_at(room, wall, floor, parameters).face
-    seen = result.openings.visibility
-    found, scene = find_doors(result.merged, seen, face, result.wall_area, (wall.height, floor), parameters)
+    (look,) = look_at_walls(replace(room, walls=(wall,)), parameters)
+    result = judge_wall(look, parameters)
+    seen, heights = result.openings.visibility, (wall.height, look.floor)
+    found, scene = find_doors(result.merged, seen, look.face, result.wall_area, heights, parameters)
     return found.candidates, scene
 
 
