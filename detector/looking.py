@@ -74,8 +74,8 @@ def look_at_walls(room: Room, parameters: DetectorParameters) -> list[Look]:
         image_shape(wall, parameters)
     seeing: list[dict[int, _ViewLook]] = [{} for _ in room.walls]
     seconds = [0.0] * len(room.walls)
-    for number, view in enumerate(room.views):
-        looks = each(partial(_look_from, view, room.floor_height, parameters=parameters), room.walls)
+    for number in range(len(room.views)):  # no name for the view: it is gone before the next is made
+        looks = each(partial(_look_from, room.views[number], room.floor_height, parameters=parameters), room.walls)
         for k, (look, time) in enumerate(looks):
             seconds[k] += time
             if look is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
@@ -123,8 +124,8 @@ class Wall:
 class Room:
     """A room whose scanning is completed."""
 
-    views: tuple[View, ...]
-    """One view a scanning location."""
+    views: Sequence[View]
+    """One view a scanning location; the detector reads each once, one after another."""
     walls: tuple[Wall, ...]
     """Wall rectangles, counter-clockwise seen from above where the room closes."""
     floor_height: float

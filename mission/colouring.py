@@ -6,7 +6,7 @@ import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import cv2
 import numpy as np
@@ -30,6 +30,22 @@ _TOLERANCE = 0.05
 """A point this much behind the nearest one of its depth cell is still on the same surface [m]."""
 _STEEPEST = float(np.tan(np.deg2rad(80)))
 """Depth that an oblique surface may span in a depth cell, per width of the cell."""
+
+
+class RangeImage(Protocol):
+    """What a scan's points follow from."""
+
+    @property
+    def elevations(self) -> NDArray[np.float64]:
+        """(E,) elevation of each row [rad]."""
+
+    @property
+    def azimuths(self) -> NDArray[np.float64]:
+        """(A,) azimuth of each column [rad]."""
+
+    @property
+    def ranges(self) -> NDArray[np.float32]:
+        """(E, A) [m]; NaN = no return."""
 
 
 def colour_scan(scan: Scan, photos: Sequence[Photo], world_from_scanner: Pose) -> View:
@@ -175,7 +191,13 @@ class _DepthCells:
         return cell
 
 
-def _points(scan: Scan, world_from_scanner: Pose, returned: Mask, pool: ThreadPoolExecutor) -> Coordinates:
+def end_points(scan: RangeImage, world_from_scanner: Pose) -> Coordinates:
+    """(N, 3) points of all returns in the world, row by row [m]: those of the view that the scan is coloured to."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return _points(scan, world_from_scanner, np.isfinite(scan.ranges), pool)
+
+
+def _points(scan: RangeImage, world_from_scanner: Pose, returned: Mask, pool: ThreadPoolExecutor) -> Coordinates:
     """(N, 3) end points of the beams that returned (E, A), row by row [m]."""
     beams = _Beams.of(scan, world_from_scanner, np.arange(len(scan.azimuths)))
     rows = bands(returned.shape)
@@ -207,7 +229,7 @@ class _Beams:
     """Of the scan in the other frame."""
 
     @classmethod
-    def of(cls, scan: Scan, pose: Pose, columns: NDArray[np.intp]) -> _Beams:
+    def of(cls, scan: RangeImage, pose: Pose, columns: NDArray[np.intp]) -> _Beams:
         """Some columns of a scan, in the frame that the pose leads to."""
         azimuths = scan.azimuths[columns]
         along = pose[:3, 0, None] * np.cos(azimuths) + pose[:3, 1, None] * np.sin(azimuths)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.detect import detect_doors
+from detector.detect import judge_walls
+from detector.looking import look_at_walls
 from mission.config import MissionConfig
 from mission.door_faces import door_faces
 from mission.evaluation import JudgedWall, evaluate, judged, placed
@@ -20,6 +21,7 @@ from mission.grid import Footprint
 from mission.rigid import Pose, transformed
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
+from mission.views import Views
 from mission.voxels import VoxelModel, room_from
 
 if TYPE_CHECKING:
@@ -59,14 +61,15 @@ class Completion:
     def complete(self, room: ExploredRoom, structure: Structure, voxels: VoxelModel) -> Iterator[Event]:
         """Hand the completed room to the detector; tie it to the others; compare its doors with the joints."""
         with self._stopwatch("detect"):
-            results = tuple(detect_doors(room_from(structure, voxels, room.views), self._config.detector))
+            looks = look_at_walls(room_from(structure, voxels, Views(room.coloured)), self._config.detector)
+            room.coloured.clear()  # all else that is kept of a room is small
+            results = tuple(judge_walls(looks, self._config.detector))
         yield self._event(
             DoorsDetected,
             results=results,
             floor_height=structure.floor_height,
             ceiling_height=structure.ceiling_height,
         )
-        room.views.clear()  # all else that is kept of a room is small
         with self._stopwatch("tie rooms"):
             faces = door_faces(results, room=room.number)
             exits, refused = find_exits(

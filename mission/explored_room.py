@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.room import View
 from mission.config import MissionConfig
 from mission.grid import Footprint, OccupancyGrid, grid_from_scans
 from mission.localisation import LaserMap, laser_map
@@ -21,6 +20,7 @@ from mission.registration import Registrar
 from mission.rigid import Pose
 from mission.samples import PosedSample
 from mission.structure import Structure, find_structure
+from mission.views import ColouredScan
 from mission.voxels import VoxelModel, label_voxels
 from sim.laser_scan import LaserScan
 
@@ -36,7 +36,8 @@ class ExploredRoom:
     """With the map of what was scanned here; through a doorway it begins with a scan from the threshold."""
     threshold: PosedSample | None = None
     """The scan from the doorway, for driving in: no scan of this room, for it saw the one before as well."""
-    views: list[View] = field(default_factory=list)
+    coloured: list[ColouredScan] = field(default_factory=list)
+    """The scans as the detector takes them; none without photographs, and none when the detector has seen them."""
     samples: list[PosedSample] = field(default_factory=list)
     rejected_in_world: list[NDArray[np.float64]] = field(default_factory=list)
     """(3,) where scans were taken that could not be registered [m]."""

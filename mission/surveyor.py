@@ -36,6 +36,7 @@ from mission.rigid import Pose, inverted
 from mission.samples import ScanSample, place, sample_scan
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
+from mission.views import ColouredScan
 from mission.voxels import VoxelModel
 from sim.laser_scan import LaserScan
 from sim.scan import Scan
@@ -154,8 +155,9 @@ class Surveyor:
         room.samples.append(place(sample, found.world_from_scanner))
         if photograph:
             with self._stopwatch("colour"):
-                room.views.append(colour_scan(scan, photos, found.world_from_scanner))
-            yield self.event(Coloured, scan_number=self._scans, view=room.views[-1])
+                view = colour_scan(scan, photos, found.world_from_scanner)
+                room.coloured.append(ColouredScan.of(scan, view, found.world_from_scanner))
+            yield self.event(Coloured, scan_number=self._scans, view=view)
 
     def _scan(self) -> Generator[Event, None, Scan]:
         self._scans += 1

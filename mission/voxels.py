@@ -153,9 +153,7 @@ def room_from(structure: Structure, voxels: VoxelModel, views: Sequence[View]) -
         )
         for wall, labels in zip(structure.walls, voxels.walls, strict=True)
     )
-    return Room(
-        views=tuple(views), walls=walls, floor_height=structure.floor_height, ceiling_height=structure.ceiling_height
-    )
+    return Room(views=views, walls=walls, floor_height=structure.floor_height, ceiling_height=structure.ceiling_height)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,7 @@ import numpy as np
 
 from detector.room import Wall
 from mission.bench.walls import scanning
-from mission.bench.walls.scanning import ColouredScan, ScannedRoom, scan_room, scanner_mount
+from mission.bench.walls.scanning import JudgedScan, ScannedRoom, scan_room, scanner_mount
 from mission.bench.walls.sources import source_digest
 
 if TYPE_CHECKING:
@@ -116,11 +116,11 @@ def read(path: Path) -> ScannedRoom:
         )
 
 
-def _read_scan(arrays: Any, key: str) -> ColouredScan:
+def _read_scan(arrays: Any, key: str) -> JudgedScan:
     plain = {name: arrays[f"{key}/{name}"] for name in _SCAN}
     count = len(plain["colours"])
     masks = {name: np.unpackbits(arrays[f"{key}/{name}"], count=count).astype(bool) for name in _MASKS}
-    return ColouredScan(**plain, **masks)
+    return JudgedScan(**plain, **masks)
 
 
 def _read_wall(arrays: Any, key: str) -> Wall:

@@ -16,13 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 import assets
-from detector.room import Room, View, Wall
+from detector.room import Room, Wall
 from mission.colouring import colour_scan
 from mission.errors import MissionError
 from mission.registration import Registrar
 from mission.rigid import Pose, from_rotation_vector
 from mission.samples import PosedSample, place, sample_scan
 from mission.structure import find_structure
+from mission.views import ColouredScan, Views
 from mission.voxels import label_voxels, room_from
 from sim.camera import Camera, Photo
 from sim.doors import DoorTruth, true_doors
@@ -43,40 +44,19 @@ STAGES = ("scanner", "camera", "samples", "registration", "structure", "voxels")
 
 
 @dataclass(frozen=True, eq=False)
-class ColouredScan:
-    """A registered scan with its points' colours: a view of the detector in 8 bytes a beam."""
+class JudgedScan(ColouredScan):
+    """A coloured scan, and what it shows of gloss."""
 
-    elevations: NDArray[np.float64]
-    """(E,) [rad]."""
-    azimuths: NDArray[np.float64]
-    """(A,) [rad]."""
-    ranges: NDArray[np.float32]
-    """(E, A) [m]; NaN = no return."""
-    world_from_scanner: Pose
-    """As registered."""
-    camera_in_world: NDArray[np.float64]
-    """(3,) [m]."""
-    colours: NDArray[np.uint8]
-    """(N, 3) sRGB of the returns, row by row."""
-    coloured: NDArray[np.bool_]
-    """(N,) where a photograph saw the point."""
     gloss: NDArray[np.uint8]
-    """(N,) levels by which the mirror image of the flash brightens that photograph. Truth: the detector never sees
-    it."""
-
-    def view(self) -> View:
-        """As the detector takes it."""
-        unlit = np.broadcast_to(np.float32(np.nan), self.ranges.shape)
-        scan = Scan(self.elevations, self.azimuths, self.ranges, reflectance=unlit, duration=0.0)
-        bare = colour_scan(scan, (), self.world_from_scanner)
-        return replace(bare, colours=self.colours, coloured=self.coloured, camera_in_world=self.camera_in_world)
+    """(N,) levels by which the mirror image of the flash brightens the photograph that coloured each return. Truth: the
+    detector never sees it."""
 
 
 @dataclass(frozen=True, eq=False)
 class ScannedRoom:
     """A benchmark room as the mission would hand it to the detector."""
 
-    scans: tuple[ColouredScan, ...]
+    scans: tuple[JudgedScan, ...]
     walls: tuple[Wall, ...]
     """That the mission found."""
     floor_height: float
@@ -88,8 +68,12 @@ class ScannedRoom:
 
     def room(self) -> Room:
         """As the detector takes it."""
-        views = tuple(scan.view() for scan in self.scans)
-        return Room(views=views, walls=self.walls, floor_height=self.floor_height, ceiling_height=self.ceiling_height)
+        return Room(
+            views=Views(self.scans),
+            walls=self.walls,
+            floor_height=self.floor_height,
+            ceiling_height=self.ceiling_height,
+        )
 
 
 def load(room: BenchRoom) -> tuple[mujoco.MjModel, mujoco.MjData]:
@@ -143,7 +127,7 @@ def scan_room(room: BenchRoom, config: MissionConfig, *, seed: int) -> ScannedRo
     rngs = [np.random.default_rng(s) for s in np.random.SeedSequence([seed, zlib.crc32(room.name.encode())]).spawn(3)]
     registrar = Registrar(config.registration)
     samples: list[PosedSample] = []
-    scans: list[ColouredScan] = []
+    scans: list[JudgedScan] = []
     errors: list[float] = []
     for truth, scan, photos in _measurements(room, config, rngs[0], rngs[1]):
         guess = truth @ _odometry_error(rngs[2]) if scans else truth  # a mission's start pose is known
@@ -208,17 +192,11 @@ def _odometry_error(rng: np.random.Generator) -> Pose:
     )
 
 
-def _coloured(scan: Scan, photos: tuple[Photo, ...], world_from_scanner: Pose) -> ColouredScan:
+def _coloured(scan: Scan, photos: tuple[Photo, ...], world_from_scanner: Pose) -> JudgedScan:
     """The scan coloured by the mission, and the truth about gloss taken along the same way as the colour."""
     view = colour_scan(scan, photos, world_from_scanner)
     gloss = [replace(photo, image=np.repeat(photo.true_gloss[..., None], 3, 2)) for photo in photos]
-    return ColouredScan(
-        elevations=scan.elevations,
-        azimuths=scan.azimuths,
-        ranges=scan.ranges,
-        world_from_scanner=world_from_scanner,
-        camera_in_world=view.camera_in_world,
-        colours=view.colours,
-        coloured=view.coloured,
+    return JudgedScan(
+        **vars(ColouredScan.of(scan, view, world_from_scanner)),
         gloss=colour_scan(scan, gloss, world_from_scanner).colours[:, 0].copy(),
     )
