@@ -116,19 +116,16 @@ def _near_and_deep(
 
     def parts_of(start: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         depth = wall.depths(points[start : start + BLOCK])
+        low = np.flatnonzero(depth < parameters.slab_front)
+        depth = depth.take(low)
+        index = (start + low).astype(np.int32)  # half the memory of numpy's own
         # minus infinity is no depth, and no number is none either: such points are left out
-        near = (depth < parameters.slab_front) & (depth > -parameters.slab_behind)
         behind = (depth < -parameters.face_tolerance) & (depth > -np.inf)
-        return _numbers(near, start), _numbers(behind, start)
+        return index[depth > -parameters.slab_behind], index[behind]
 
     blocks = each(parts_of, range(0, max(len(points), 1), BLOCK))
     near, behind = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
     return near, behind
-
-
-def _numbers(chosen: NDArray[np.bool_], start: int) -> NDArray[np.int32]:
-    """Where a mask is true, counted from `start`: in half the memory of numpy's own indices."""
-    return np.flatnonzero(chosen).astype(np.int32) + np.int32(start)
 
 
 def _columns(points: NDArray[np.float32]) -> NDArray[np.float32]:
