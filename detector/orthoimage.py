@@ -83,7 +83,7 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
     points = view.points_in_world
     near, deep = _near_and_deep(points, wall, parameters)
     slab = _columns(wall.wall_from_world(points.take(near, axis=0)))
-    low = np.flatnonzero((slab[1] > floor + LOW[0]) & (slab[1] < floor + LOW[1]))
+    low = np.flatnonzero((slab[1] > floor + LOW[0]) & (slab[1] < floor + LOW[1]) & _beside(slab[0], wall))
     inside = np.flatnonzero(_inside(slab[0], slab[1], wall) & (slab[1] >= floor + parameters.floor_margin))
     if len(inside) == 0:
         return None
@@ -93,9 +93,9 @@ def crop(view: View, wall: Wall, floor: float, parameters: DetectorParameters) -
     u, v, depths = thinned
     front = (depths > parameters.slab_front) & (depths < 0.98 * scanner[2])
     reach = (depths < LEAF_REACH) & (depths >= -parameters.face_tolerance)
-    reach &= (u > -LEAF_REACH) & (u < wall.width + LEAF_REACH) & (v > floor + 0.1)
+    reach &= _beside(u, wall) & (v > floor + 0.1)
     beyond = (behind[2] > -LEAF_REACH) & (behind[1] > floor + 0.1)
-    beyond &= (behind[0] > -LEAF_REACH) & (behind[0] < wall.width + LEAF_REACH)
+    beyond &= _beside(behind[0], wall)
     return WallPoints(
         slab=slab.take(inside, axis=1).T,
         colours=view.colours.take(near, axis=0),
@@ -141,6 +141,11 @@ def _chosen(columns: NDArray, chosen: NDArray[np.bool_]) -> NDArray:
 def _inside(u: NDArray[np.float32], v: NDArray[np.float32], wall: Wall) -> NDArray[np.bool_]:
     """(N,) True over the wall's rectangle."""
     return (u >= 0) & (u < wall.width) & (v >= 0) & (v < wall.height)
+
+
+def _beside(u: NDArray[np.float32], wall: Wall) -> NDArray[np.bool_]:
+    """(N,) True over the wall's extent and as far beside it as an open leaf may reach."""
+    return (u > -LEAF_REACH) & (u < wall.width + LEAF_REACH)
 
 
 def _crossings(columns: NDArray[np.float32], scanner: NDArray[np.float64], wall: Wall) -> NDArray[np.float32]:

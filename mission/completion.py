@@ -61,8 +61,9 @@ class Completion:
     def complete(self, room: ExploredRoom, structure: Structure, voxels: VoxelModel) -> Iterator[Event]:
         """Hand the completed room to the detector; tie it to the others; compare its doors with the joints."""
         with self._stopwatch("detect"):
-            looks = look_at_walls(room_from(structure, voxels, Views(room.coloured)), self._config.detector)
-            room.coloured.clear()  # all else that is kept of a room is small
+            views = Views(room.coloured, once=True)
+            room.close()
+            looks = look_at_walls(room_from(structure, voxels, views), self._config.detector)
             results = tuple(judge_walls(looks, self._config.detector))
         yield self._event(
             DoorsDetected,

@@ -7,7 +7,7 @@ the true map, links to other rooms tell later.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +47,11 @@ class ExploredRoom:
     """Those taken under way on legs that ended as planned."""
     robot_poses: list[Pose] = field(default_factory=list)
     """Where the robot has stood."""
+
+    def close(self) -> None:
+        """Let go of what only a room that is scanned needs: what remains is to link it, and to drive through it."""
+        self.coloured.clear()
+        self.samples = [replace(sample, sample=sample.sample.without_image()) for sample in self.samples]
 
     def structure(self) -> Structure:
         """Floor, ceiling and walls as far as they are scanned.

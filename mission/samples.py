@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,6 +54,10 @@ class ScanSample:
     """(E,) [rad], descending, evenly spaced."""
     azimuths: NDArray[np.float64]
     """(A,) [rad], ascending, evenly spaced."""
+
+    def without_image(self) -> ScanSample:
+        """The points alone: the range image has no rows."""
+        return replace(self, ranges=self.ranges[:0].copy(), elevations=self.elevations[:0])
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from detector.room import View
 from mission.colouring import end_points
+from mission.memory import release_freed_memory
 from mission.rigid import Pose
 
 if TYPE_CHECKING:
@@ -61,10 +62,17 @@ class ColouredScan:
 
 
 class Views(Sequence[View]):
-    """Views of which each is made anew whenever it is read: who reads one after another has one in memory."""
+    """Views that are made when they are read: who reads one after another has one in memory."""
 
-    def __init__(self, scans: Sequence[ColouredScan]) -> None:
-        self._scans = tuple(scans)
+    def __init__(self, scans: Sequence[ColouredScan], *, once: bool = False) -> None:
+        """Views of some scans.
+
+        Args:
+            scans: One a view.
+            once: Whether a scan is let go when its view is read, which then cannot be read again.
+        """
+        self._scans: list[ColouredScan | None] = list(scans)
+        self._once = once
 
     def __len__(self) -> int:
         return len(self._scans)
@@ -72,6 +80,14 @@ class Views(Sequence[View]):
     @overload
     def __getitem__(self, number: int) -> View: ...
     @overload
-    def __getitem__(self, number: slice) -> Views: ...
-    def __getitem__(self, number: int | slice) -> View | Views:
-        return Views(self._scans[number]) if isinstance(number, slice) else self._scans[number].view()
+    def __getitem__(self, number: slice) -> Sequence[View]: ...
+    def __getitem__(self, number: int | slice) -> View | Sequence[View]:
+        if isinstance(number, slice):
+            return tuple(self[k] for k in range(*number.indices(len(self))))
+        scan = self._scans[number]
+        if scan is None:
+            raise LookupError(f"view {number} was read before")
+        if self._once:
+            self._scans[number] = None
+        release_freed_memory()  # of the view before
+        return scan.view()

@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 
 import mission.explored_room
+from mission.colouring import colour_scan
 from mission.config import MissionConfig
 from mission.explored_room import ExploredRoom
 from mission.registration import Registrar
+from mission.samples import place, sample_scan
+from mission.views import ColouredScan
 from sim.scan import ScannerParameters
+from tests.mission import boxroom
 from tests.mission.driving_world import FOOTPRINT, pose
 from tests.mission.test_visibility import scan
 
@@ -38,3 +42,16 @@ class _Anything:
     """A structure, voxels or grid of which nobody asks more than its floor and outline."""
 
     floor_height, polygon = 0.0, None
+
+
+def test_a_closed_room_keeps_what_one_finds_ones_way_by_and_no_image() -> None:
+    place_of_scan = boxroom.pose(3, 2)
+    taken = boxroom.scan(boxroom.plain_room(), place_of_scan)
+    coloured = ColouredScan.of(taken, colour_scan(taken, [], place_of_scan), place_of_scan)
+    sample = place(sample_scan(taken), place_of_scan)
+    room = ExploredRoom(1, FOOTPRINT, MissionConfig(), Registrar(), samples=[sample], coloured=[coloured])
+    room.close()
+
+    assert room.coloured == [] and room.samples[0].sample.ranges.size == 0
+    assert np.array_equal(room.points, sample.points_in_world)
+    assert np.array_equal(room.samples[0].sample.points, sample.sample.points)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from weakref import ref
+
 import numpy as np
+import pytest
 
 from mission.colouring import colour_scan
 from mission.views import ColouredScan, Views
@@ -30,3 +33,16 @@ def test_views_are_read_like_a_list_and_each_is_made_anew() -> None:
     assert len(views) == 3 and [round(view.scanner_in_world[0]) for view in views] == [0, 1, 2]
     assert [round(view.scanner_in_world[0]) for view in views[1:]] == [1, 2]
     assert views[0] is not views[0]
+
+
+def test_views_to_be_read_once_let_their_scans_go() -> None:
+    taken = scan([HANGING], pose(0, 0))
+    coloured = ColouredScan.of(taken, colour_scan(taken, [], pose(0, 0)), pose(0, 0))
+    kept = ref(coloured)
+    views = Views([coloured], once=True)
+    del coloured
+
+    assert kept() is not None and len(views[0].points_in_world) > 0
+    assert kept() is None and len(views) == 1
+    with pytest.raises(LookupError, match="view 0 was read before"):
+        views[0]
