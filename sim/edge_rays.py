@@ -26,19 +26,20 @@ class EdgeRays:
         self._model.geom_group[:] = _HIDDEN
         self._model.body_bvhadr[:] = -1  # bounding volumes hold colliding geoms only; others would be missed
         self._data = mujoco.MjData(self._model)
+        self._eye = np.zeros(3)
 
-    def place(self, data: mujoco.MjData) -> None:
-        """Take over where the geoms are in `data`."""
+    def place(self, data: mujoco.MjData, eye: NDArray[np.float64]) -> None:
+        """Take over where the geoms are in `data`, and start all beams at `eye` (3,) in the world frame."""
         self._data.geom_xpos[:] = data.geom_xpos
         self._data.geom_xmat[:] = data.geom_xmat
+        self._eye = np.ascontiguousarray(eye)
 
     def cast(
-        self, eye: NDArray[np.float64], beams: NDArray[np.float64], geoms: NDArray[np.int32]
+        self, beams: NDArray[np.float64], geoms: NDArray[np.int32]
     ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
         """Cast beams against some geoms.
 
         Args:
-            eye: (3,) where the beams start, in the world frame.
             beams: (N, 3) unit vectors in the world frame.
             geoms: (G,) ids of what beams can meet.
 
@@ -48,7 +49,7 @@ class EdgeRays:
         ranges, met = np.empty(len(beams)), np.empty(len(beams), np.int32)
         self._model.geom_group[geoms] = _SHOWN
         mujoco.mj_multiRay(
-            *(self._model, self._data, np.ascontiguousarray(eye), np.ascontiguousarray(beams).ravel(), _SHOWN_ONLY),
+            *(self._model, self._data, self._eye, np.ascontiguousarray(beams).ravel(), _SHOWN_ONLY),
             *(True, -1, met, ranges, None, len(beams), _FARTHEST),
         )
         self._model.geom_group[geoms] = _HIDDEN

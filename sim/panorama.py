@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
@@ -85,31 +85,47 @@ class BeamCaster:
         values = np.empty_like(inverse_range)
         free: SimpleQueue[EdgeRays] = SimpleQueue()
         for rays in self._rays:
-            rays.place(data)
+            rays.place(data, world_from_scanner[:3, 3])
             free.put(rays)
 
         def read(number: int, depth: Depth) -> None:
             columns = slice(number * wedge.columns, (number + 1) * wedge.columns)
-            raw, marked = wedge.sample(depth, self._is_round)
-            picture = _look_up(value_of_geom[depth.geom_ids], depth.segments)
-            value = cv2.remap(picture, wedge.map_x, wedge.map_y, cv2.INTER_NEAREST)
-            raw += np.float32(self._renderer.inverse_depth_offset / self._renderer.inverse_depth_scale)
-            cv2.multiply(raw, wedge.cosine, dst=raw, scale=self._renderer.inverse_depth_scale)
+
+            def along(row: NDArray[np.intp], column: NDArray[np.intp]) -> NDArray[np.float64]:
+                return directions(elevations[row], azimuths[columns][column]) @ world_from_scanner[:3, :3].T
+
             rays = free.get()
-            for beams, geoms in wedge.groups(depth, marked):
-                row, column = np.divmod(beams, wedge.columns)
-                along = directions(elevations[row], azimuths[columns][column]) @ world_from_scanner[:3, :3].T
-                ranges, met = rays.cast(world_from_scanner[:3, 3], along, geoms)
-                raw[row, column] = 1 / np.minimum(ranges, self._renderer.far)
-                value[row, column] = value_of_geom[met]
-            free.put(rays)
-            inverse_range[:, columns], values[:, columns] = raw, value
+            try:
+                inverse_range[:, columns], values[:, columns] = self._read(depth, wedge, rays, along, value_of_geom)
+            finally:
+                free.put(rays)
 
         with ThreadPoolExecutor(len(self._rays)) as pool:  # a picture is read while the next one is rendered
             pictures = (self._renderer.depth(data, wedge.view(world_from_scanner, k)) for k in range(WEDGES))
             for reading in [pool.submit(read, number, picture) for number, picture in enumerate(pictures)]:
                 reading.result()
         return inverse_range, values
+
+    def _read(
+        self,
+        depth: Depth,
+        wedge: _Wedge,
+        rays: EdgeRays,
+        along: Callable[[NDArray[np.intp], NDArray[np.intp]], NDArray[np.float64]],
+        value_of_geom: NDArray[np.float32],
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """(E, columns) inverse ranges and values of a wedge; `along` gives the beams of rows and columns in world."""
+        raw, inexact = wedge.sample(depth, self._is_round)
+        picture = _look_up(value_of_geom[depth.geom_ids], depth.segments)
+        values = np.asarray(cv2.remap(picture, wedge.map_x, wedge.map_y, cv2.INTER_NEAREST), np.float32)
+        raw += np.float32(self._renderer.inverse_depth_offset / self._renderer.inverse_depth_scale)
+        cv2.multiply(raw, wedge.cosine, dst=raw, scale=self._renderer.inverse_depth_scale)
+        for beams, geoms in wedge.groups(depth, inexact):
+            row, column = np.divmod(beams, wedge.columns)
+            ranges, met = rays.cast(along(row, column), geoms)
+            raw[row, column] = 1 / np.minimum(ranges, self._renderer.far)
+            values[row, column] = value_of_geom[met]
+        return raw, values
 
 
 def bare_renders(
@@ -119,7 +135,7 @@ def bare_renders(
     elevations: NDArray[np.float64],
     azimuths: NDArray[np.float64],
 ) -> None:
-    """Render the pictures that `cast_panorama` reads, and throw them away: what no implementation can do without."""
+    """Render the pictures that a `BeamCaster` reads, and throw them away: what no implementation can do without."""
     wedge = _wedge(elevations.tobytes(), azimuths.tobytes())
     for number in range(WEDGES):
         renderer.depth(data, wedge.view(world_from_scanner, number))
