@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.detect import judge_walls
-from detector.looking import look_at_walls
+from detector.detect import detect_doors
 from mission.config import MissionConfig
 from mission.door_faces import door_faces
 from mission.evaluation import JudgedWall, evaluate, judged, placed
@@ -63,8 +62,7 @@ class Completion:
         with self._stopwatch("detect"):
             views = Views(room.coloured, once=True)
             room.close()
-            looks = look_at_walls(room_from(structure, voxels, views), self._config.detector)
-            results = tuple(judge_walls(looks, self._config.detector))
+            results = tuple(detect_doors(room_from(structure, voxels, views), self._config.detector))
         yield self._event(
             DoorsDetected,
             results=results,

@@ -51,6 +51,7 @@ class ExploredRoom:
     def close(self) -> None:
         """Let go of what only a room that is scanned needs: what remains is to link it, and to drive through it."""
         self.coloured.clear()
+        self.threshold = None
         self.samples = [replace(sample, sample=sample.sample.without_image()) for sample in self.samples]
 
     def structure(self) -> Structure:

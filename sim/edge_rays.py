@@ -8,8 +8,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-_SHOWN, _HIDDEN = 0, mujoco.mjNGROUP - 1
-_SHOWN_ONLY = np.eye(1, mujoco.mjNGROUP, _SHOWN, dtype=np.uint8)[0]
+from sim.render.visibility import HIDDEN, SHOWN
+
+_SHOWN_ONLY = (np.arange(mujoco.mjNGROUP) == SHOWN).astype(np.uint8)
 _FARTHEST = 1e10
 
 
@@ -23,7 +24,7 @@ class EdgeRays:
             model: the world; it is copied.
         """
         self._model = copy.copy(model)  # whose groups say what rays meet
-        self._model.geom_group[:] = _HIDDEN
+        self._model.geom_type[model.geom_type == mujoco.mjtGeom.mjGEOM_SDF] = mujoco.mjtGeom.mjGEOM_MESH  # as drawn
         self._model.body_bvhadr[:] = -1  # bounding volumes hold colliding geoms only; others would be missed
         self._data = mujoco.MjData(self._model)
         self._eye = np.zeros(3)
@@ -47,10 +48,10 @@ class EdgeRays:
             (N,) range [m], infinite where a beam meets nothing; (N,) geom id, then -1.
         """
         ranges, met = np.empty(len(beams)), np.empty(len(beams), np.int32)
-        self._model.geom_group[geoms] = _SHOWN
+        self._model.geom_group[:] = HIDDEN
+        self._model.geom_group[geoms] = SHOWN
         mujoco.mj_multiRay(
             *(self._model, self._data, self._eye, np.ascontiguousarray(beams).ravel(), _SHOWN_ONLY),
             *(True, -1, met, ranges, None, len(beams), _FARTHEST),
         )
-        self._model.geom_group[geoms] = _HIDDEN
         return np.where(met < 0, np.inf, ranges), met

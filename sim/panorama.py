@@ -36,8 +36,8 @@ _ROUND = [
     )
 ]
 _ROUND_MARK = np.uint8(2)
-_AROUND = np.ones((7, 7), np.uint8)
-"""How far beyond its drawn edge a round geom may reach [px]: 0.5 % of its radius."""
+_AROUND = 5
+"""How far beyond its drawn edge a round geom may reach [px]: 0.5 % of its radius, from not nearer than half of that."""
 _DENSITY = 512, 1024
 """Fewest and most pixels per unit of tangent, which is per radian in the middle of a picture."""
 
@@ -183,7 +183,7 @@ class _Wedge:
         marks = bent_blocks(depth.raw)
         if is_round.any():
             round_marks = _look_up(_ROUND_MARK * is_round[depth.geom_ids], depth.segments)
-            cv2.max(marks, cv2.dilate(round_marks, _AROUND), dst=marks)
+            cv2.max(marks, cv2.dilate(round_marks, np.ones((2 * _AROUND + 1,) * 2, np.uint8)), dst=marks)
         mark = marks.ravel().take(flat_block)
 
         bent = np.flatnonzero(mark == 1)
@@ -207,9 +207,11 @@ class _Wedge:
         order = np.argsort(tile, kind="stable")
         for part in np.split(order, np.flatnonzero(np.diff(tile[order])) + 1):
             if len(part):
-                lowest, leftmost = up[part[0]] // _TILE * _TILE, right[part[0]] // _TILE * _TILE
-                window = depth.segments[lowest : lowest + _TILE + 1, leftmost : leftmost + _TILE + 1]
-                seen = depth.geom_ids[np.flatnonzero(np.bincount(window.ravel()))]
+                window = tuple(
+                    slice(max(first - _AROUND, 0), first + _TILE + 1 + _AROUND)
+                    for first in (up[part[0]] // _TILE * _TILE, right[part[0]] // _TILE * _TILE)
+                )
+                seen = depth.geom_ids[np.flatnonzero(np.bincount(depth.segments[window].ravel()))]
                 yield beams[part], seen[seen >= 0]
 
 
