@@ -132,11 +132,11 @@ def _behind_cubes(cells: NDArray[np.float64], cubes: NDArray[np.float64], view: 
     cell_azimuth, cell_polar, distance, _ = _spherical(cells)
     hidden = np.zeros(len(cells), dtype=np.bool_)
     for n in range(_LEVELS):
-        width, chosen = finest * 2**n, level == n
+        width, such = finest * 2**n, level == n
         columns = int(2 * np.pi / width) + 2
         nearest = np.full((int(np.pi / width) + 2) * columns, np.inf, dtype=np.float32)
-        filled = (polar[chosen] / width).astype(np.intp) * columns + (azimuth[chosen] / width).astype(np.intp)
-        np.minimum.at(nearest, filled, depth[chosen])
+        filled = (polar[such] / width).astype(np.intp) * columns + (azimuth[such] / width).astype(np.intp)
+        np.minimum.at(nearest, filled, depth[such])
         looked = (cell_polar / width).astype(np.intp) * columns + (cell_azimuth / width).astype(np.intp)
         hidden |= nearest[looked] < distance - np.float32(_TOUCH)
     return hidden

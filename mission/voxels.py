@@ -240,9 +240,8 @@ def _labelled(
     occupied, grazed = _filled(patch, points, number, scanners, parameters)
     empty = ~occupied & ~grazed & (patch.areas > 0)
     labels = np.where(occupied, VoxelLabel.OCCUPIED, VoxelLabel.OCCLUDED).astype(np.uint8)
-    labels[empty] = np.where(
-        _looked_through(patch, empty, visibility, parameters.size), VoxelLabel.OPENING, VoxelLabel.OCCLUDED
-    )
+    through = _looked_through(patch, empty, visibility, parameters.size)
+    labels[empty] = np.where(through, VoxelLabel.OPENING, VoxelLabel.OCCLUDED)
     return labels
 
 
@@ -286,16 +285,13 @@ def _clutter(structure: Structure, points: Floats, parameters: VoxelParameters) 
     """(K, 3) centres of world-aligned voxels with points that are inside and off every surface."""
     reach = parameters.level_reach
     high = np.inf if structure.ceiling_height is None else structure.ceiling_height
-    within = (points[:, 2] > structure.floor_height + reach) & (points[:, 2] < high - reach)
-    inside = chosen(points, within)
+    inside = chosen(points, (points[:, 2] > structure.floor_height + reach) & (points[:, 2] < high - reach))
     inside = chosen(inside, structure.interior(inside))
     for wall in structure.walls:
         patch = _wall_patch(wall, parameters)
         along, depth = patch.along(inside, patch.u), patch.along(inside, patch.normal)
-        off = (depth > patch.before) | (depth < -patch.behind) | (along < 0) | (along > wall.width)
-        inside = chosen(inside, off)
-    cells = distinct(np.floor(inside / parameters.size).astype(int)).astype(np.float64)
-    return (cells + 0.5) * parameters.size
+        inside = chosen(inside, (depth > patch.before) | (depth < -patch.behind) | (along < 0) | (along > wall.width))
+    return parameters.size * (distinct(np.floor(inside / parameters.size).astype(int)) + np.float64(0.5))
 
 
 def _gathered(grids: Sequence[NDArray[Any]], counted: Sequence[NDArray[np.bool_]]) -> NDArray[Any]:

@@ -25,10 +25,8 @@ FOOTPRINT = (0.97, 0.57)
 """Length and width of MoPAD over everything: the chassis, and the outside of the tracks with 4 mm each side [m]."""
 
 _GROUND = f"{ROBOT_PREFIX}ground"
-_GROUND_BIT = 1 << 30
-"""Collision bit of the plane that carries MoPAD where the scene's floor does not; MoPAD has all bits."""
-_LEAF_BIT = 1 << 29
-"""Likewise of the doors' leaves."""
+_GROUND_BIT, _LEAF_BIT = 1 << 30, 1 << 29
+"""Collision bits of the plane that carries MoPAD where the scene's floor does not, and of leaves; MoPAD has all."""
 _ORIGIN_SITE = "beam_origin"
 _GRAVITY = (0.0, 0.0, -9.81)
 _LONGEST_STEP = 0.004
@@ -53,12 +51,11 @@ class Scene:
     world_from_base: np.ndarray
     """(4, 4) start pose of the robot's base."""
     set_downs: dict[str, np.ndarray]
-    """(4, 4) poses of the base at which an operator sets the robot down where no way leads on, by their sites:
-    `start_2`, `start_3`... in this order."""
+    """(4, 4) poses of the base at which an operator sets the robot down where no way leads on, by site, in order."""
     robot_bodies: frozenset[int]
     """Ids of the robot's bodies: its own sensors do not see them."""
     robot_prefix: str
-    """What the names of the robot's bodies, joints, sites and actuators begin with."""
+    """Of the names of the robot's bodies, joints, sites and actuators."""
     obstacles: Obstacles
     """What will get in the robot's way."""
 
@@ -82,11 +79,10 @@ def load_scene(
 
     The state is the keyframe's of that name, else the first keyframe, else qpos0. MoPAD starts at a site named
     `start`, else at the freest spot inside a room; a scene that already holds a MoPAD keeps it where it is; sites
-    `start_2`, `start_3`... say where it may be set down again. Doors stay
-    where they are put, as if wedged. The scene's own options stay, except for what driving needs: the earth's gravity
-    (where there was none, the scene's own bodies go on floating) and no water, contacts at the surface and actuation,
-    the implicitfast integrator and a solver that converges, at most 4 ms a step, and a plane to drive on where the
-    floor is a picture only.
+    `start_2`, `start_3`... say where it may be set down again. Doors stay where they are put, as if wedged. The scene's
+    own options stay, except for what driving needs: the earth's gravity (where there was none, the scene's own bodies
+    go on floating) and no water, contacts at the surface and actuation, the implicitfast integrator and a solver that
+    converges, at most 4 ms a step, and a plane to drive on where the floor is a picture only.
 
     Args:
         path: the MJCF file.
@@ -95,8 +91,7 @@ def load_scene(
         obstacles: what is put in the robot's way later on.
 
     Raises:
-        SimError: one line that says what is wrong with the scene, the keyframe, the doors, the start or an obstacle,
-            and where.
+        SimError: one line that says what is wrong with scene, keyframe, doors, start or an obstacle, and where.
     """
     mujoco.set_mju_user_warning(_warn)  # MuJoCo's own way is a file in the user's folder
     spec = _read(path)

@@ -89,9 +89,8 @@ def test_it_sees_what_nothing_can_bump_into(world):
 
 
 def test_a_tilted_laser_sees_what_its_plane_meets_and_nothing_else(world):
-    tilt = np.radians(
-        30
-    )  # nose down: 1 m ahead the plane is tan(30 deg) = 0.577 m lower, after 1/cos(30 deg) = 1.155 m
+    # nose down: 1 m ahead the plane is tan(30 deg) = 0.577 m lower, after 1/cos(30 deg) = 1.155 m
+    tilt = np.radians(30)
     base = np.eye(4)
     base[:3, :3] = [[np.cos(tilt), 0, np.sin(tilt)], [0, 1, 0], [-np.sin(tilt), 0, np.cos(tilt)]]
     low, level = '<geom type="box" size=".1 2 .1" pos="1.1 0 -.6"/>', '<geom type="box" size=".1 2 .1" pos="1.1 0 0"/>'
