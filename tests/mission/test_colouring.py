@@ -120,3 +120,16 @@ def test_the_camera_centre_is_given_in_the_world() -> None:
 def test_pictures_from_different_places_are_refused() -> None:
     with pytest.raises(MissionError, match="one camera centre"):
         colour_scan(sphere(), [photo(plain(RED)), photo(plain(RED), height=0.2)], np.eye(4))
+
+
+def test_bands_do_not_show_in_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+    image = np.random.default_rng(0).integers(0, 255, (200, 200, 3), np.uint8)
+    photos = [photo(image), photo(plain(GREEN), azimuth=np.deg2rad(50), tilt=0.1)]
+    taken = scan([WALL, box((2, 2.1), (-0.5, 0.5), (1, 2))], pose(0, 0))
+    views = []
+    for pixels in (1, 10**9):
+        monkeypatch.setattr("sim.bands._PIXELS", pixels)
+        views.append(colour_scan(taken, photos, pose(1, 2, 0.3)))
+
+    assert np.array_equal(views[0].colours, views[1].colours) and views[0].coloured.any()
+    assert np.array_equal(views[0].points_in_world, views[1].points_in_world)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from mission.samples import SampleParameters, place, sample_scan, thinned
 from tests.mission.boxroom import plain_room, pose, scan
@@ -42,3 +43,14 @@ def test_what_returns_nothing_leaves_no_point() -> None:
 
     assert nothing.points.shape == (0, 3)
     assert np.isnan(nothing.ranges).all()
+
+
+def test_bands_do_not_show_in_a_sample(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken = scan(plain_room(), pose(3, 2), noise=0.003)
+    samples = []
+    for pixels in (1, 10**9):
+        monkeypatch.setattr("sim.bands._PIXELS", pixels)
+        samples.append(sample_scan(taken))
+
+    assert np.array_equal(samples[0].points, samples[1].points)
+    assert np.array_equal(samples[0].normals, samples[1].normals, equal_nan=True)

@@ -257,3 +257,18 @@ def test_an_empty_world_makes_black_photographs(world, renderer_of):
     photo = photograph(renderer_of, world(""))[0]
     assert photo.image.shape == (268, 178, 3)
     assert not photo.image.any()
+
+
+def test_bands_do_not_show_in_a_photograph(world, renderer_of, monkeypatch):
+    # Shadow, gloss and noise across bands of 4 rows and in a single band: the same to the bit.
+    shiny = '<material name="shiny" rgba=".3 .5 .7 1" specular=".8" shininess=".6"/>' + MATT
+    scene = world(wall(3, material="shiny") + '<geom size=".3" pos="2 .2 .3" material="matt"/>', shiny)
+    noisy = SMALL.model_copy(update={"noise": True})
+    turns = []
+    for pixels in (1, 10**9):
+        monkeypatch.setattr("sim.bands._PIXELS", pixels)
+        turns.append(photograph(renderer_of, scene, noisy))
+    for narrow, whole in zip(*turns, strict=True):
+        assert np.array_equal(narrow.image, whole.image)
+        assert np.array_equal(narrow.true_gloss, whole.true_gloss)
+    assert any(photo.true_gloss.any() for photo in turns[0])

@@ -282,3 +282,29 @@ def test_quick_noise_is_normal():
     assert sample.std() == pytest.approx(1, abs=0.005)
     assert (np.abs(sample) > 2).mean() == pytest.approx(0.0455, abs=0.001)
     assert np.abs(np.corrcoef(sample[:, :-1].ravel(), sample[:, 1:].ravel())[0, 1]) < 0.005
+
+
+def test_a_scan_whose_rays_fail_says_so_and_the_next_one_is_as_if_nothing_had_been(world, renderer_of, monkeypatch):
+    scene = world(ROOM)
+    scanner = Scanner(renderer_of(scene[0]), EXACT)
+    before = scanner.scan(scene[1], pose(z=1.2), np.random.default_rng(0))
+
+    def fail(*_arguments):
+        raise RuntimeError("no rays today")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("sim.edge_rays.mujoco.mj_multiRay", fail)
+        with pytest.raises(RuntimeError, match="no rays today"):
+            scanner.scan(scene[1], pose(z=1.2), np.random.default_rng(0))
+    after = scanner.scan(scene[1], pose(z=1.2), np.random.default_rng(0))
+    assert np.array_equal(before.ranges, after.ranges, equal_nan=True)
+
+
+def test_a_distance_field_is_seen_as_its_mesh_is(world, renderer_of, true_ranges):
+    mesh = '<mesh name="gem" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/>'
+    scans = [
+        scan_once(renderer_of, world(f'<geom type="{kind}" mesh="gem" pos="2.5 -.3 -.3"/>', mesh))
+        for kind in ("mesh", "sdf")
+    ]
+    assert scans[0].hits.sum() > 1000
+    assert np.array_equal(scans[0].ranges, scans[1].ranges, equal_nan=True)
