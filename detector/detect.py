@@ -44,12 +44,9 @@ def detect_doors(room: Room, parameters: DetectorParameters | None = None) -> li
         DetectorError: The room has no view or no floor, or a wall is malformed or too large for `pixel_size`.
     """
     parameters = parameters or DetectorParameters()
-    return judge_walls(look_at_walls(room, parameters), parameters)
-
-
-def judge_walls(looks: list[Look], parameters: DetectorParameters) -> list[WallResult]:
-    """The doors of each wall, from what the views show of it; the list is emptied, for a look is large."""
-    return each(partial(judge_wall, parameters=parameters), (looks.pop(0) for _ in range(len(looks))))
+    looks = look_at_walls(room, parameters)
+    each_look = (looks.pop(0) for _ in room.walls)  # a look is large, and gone with its wall
+    return each(partial(judge_wall, parameters=parameters), each_look)
 
 
 def detect_wall(room: Room, wall: Wall, parameters: DetectorParameters) -> WallResult:

@@ -8,9 +8,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.render.visibility import HIDDEN, SHOWN
+from sim.render.visibility import HIDDEN, SHOWN, cast_at_shown
 
-_SHOWN_ONLY = (np.arange(mujoco.mjNGROUP) == SHOWN).astype(np.uint8)
 _FARTHEST = 1e10
 
 
@@ -33,7 +32,7 @@ class EdgeRays:
         """Take over where the geoms are in `data`, and start all beams at `eye` (3,) in the world frame."""
         self._data.geom_xpos[:] = data.geom_xpos
         self._data.geom_xmat[:] = data.geom_xmat
-        self._eye = np.ascontiguousarray(eye)
+        self._eye = eye
 
     def cast(
         self, beams: NDArray[np.float64], geoms: NDArray[np.int32]
@@ -47,11 +46,6 @@ class EdgeRays:
         Returns:
             (N,) range [m], infinite where a beam meets nothing; (N,) geom id, then -1.
         """
-        ranges, met = np.empty(len(beams)), np.empty(len(beams), np.int32)
         self._model.geom_group[:] = HIDDEN
         self._model.geom_group[geoms] = SHOWN
-        mujoco.mj_multiRay(
-            *(self._model, self._data, self._eye, np.ascontiguousarray(beams).ravel(), _SHOWN_ONLY),
-            *(True, -1, met, ranges, None, len(beams), _FARTHEST),
-        )
-        return np.where(met < 0, np.inf, ranges), met
+        return cast_at_shown(self._model, self._data, self._eye, beams, _FARTHEST)

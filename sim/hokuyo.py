@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.laser_scan import HokuyoParameters, LaserScan
-from sim.render.visibility import SHOWN, showing, visible_geoms
+from sim.render.visibility import cast_at_shown, showing, visible_geoms
 
 # Makers' numbers: SCIP 2.0 manual of the URG-04LX, pages 5, 12, 21.
 STEPS_PER_TURN = 1024
@@ -76,20 +76,13 @@ class Hokuyo:
 
     def _cast(self, data: mujoco.MjData, world_from_laser: NDArray[np.float64]) -> NDArray[np.float64]:
         """(682,) exact ranges [m]; NaN where there is nothing."""
-        count = len(self.angles)
-        beams_in_world = np.ascontiguousarray(self._beams @ world_from_laser[:3, :3].T).ravel()
-        origin = np.ascontiguousarray(world_from_laser[:3, 3])
-        groups = np.zeros(mujoco.mjNGROUP, np.uint8)
-        groups[SHOWN] = 1
-        hit, ranges = np.empty(count, np.int32), np.empty(count)
-        reach = 2 * self.parameters.max_range
         shown = self._visible & self._cut(data, world_from_laser)
+        beams = self._beams @ world_from_laser[:3, :3].T
         # the only way to hide several bodies and glass from a ray
         with showing(self._model, shown), _unbounded(self._model, self._loose):
-            mujoco.mj_multiRay(
-                self._model, data, origin, beams_in_world, groups, True, -1, hit, ranges, None, count, reach
-            )
-        return np.where(hit < 0, np.nan, ranges)
+            reach = 2 * self.parameters.max_range
+            ranges, met = cast_at_shown(self._model, data, world_from_laser[:3, 3], beams, reach)
+        return np.where(met < 0, np.nan, ranges)
 
     def _cut(self, data: mujoco.MjData, world_from_laser: NDArray[np.float64]) -> NDArray[np.bool_]:
         """(ngeom,) whether the beams' plane cuts a geom's bounding box: the others would cost half the time."""

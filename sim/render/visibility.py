@@ -16,6 +16,7 @@ GLASS_ALPHA = 0.5
 
 SHOWN, HIDDEN = 0, mujoco.mjNGROUP - 1
 """The two groups that `showing` sorts the geoms into."""
+_SHOWN_ONLY = (np.arange(mujoco.mjNGROUP) == SHOWN).astype(np.uint8)
 
 
 def effective_rgba(model: mujoco.MjModel) -> NDArray[np.float32]:
@@ -50,3 +51,26 @@ def showing(model: mujoco.MjModel, visible: NDArray[np.bool_]) -> Iterator[None]
         yield
     finally:
         model.geom_group[:] = groups
+
+
+def cast_at_shown(
+    model: mujoco.MjModel, data: mujoco.MjData, eye: NDArray[np.float64], beams: NDArray[np.float64], reach: float
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Cast beams from one point against the geoms in the group `SHOWN`.
+
+    Args:
+        model: the world, its geoms sorted into groups.
+        data: its state.
+        eye: (3,) where the beams start, in the world frame.
+        beams: (N, 3) unit vectors in the world frame.
+        reach: beams meet nothing farther away [m].
+
+    Returns:
+        (N,) range [m], infinite where a beam meets nothing; (N,) geom id, then -1.
+    """
+    ranges, met = np.empty(len(beams)), np.empty(len(beams), np.int32)
+    mujoco.mj_multiRay(
+        *(model, data, np.ascontiguousarray(eye), np.ascontiguousarray(beams).ravel(), _SHOWN_ONLY),
+        *(True, -1, met, ranges, None, len(beams), reach),
+    )
+    return np.where(met < 0, np.inf, ranges), met

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.noise import normal_noise
 from sim.scanner import PATTERNS, Scanner, ScannerParameters
 
 ROOM = """
@@ -273,15 +272,6 @@ def test_the_noise_does_not_depend_on_the_number_of_cores(world, renderer_of, mo
         monkeypatch.setattr("os.cpu_count", lambda cores=cores: cores)
         scans.append(scan_once(renderer_of, scene, pose(z=1.2), noisy))
     assert np.array_equal(scans[0].ranges, scans[1].ranges, equal_nan=True)
-
-
-def test_quick_noise_is_normal():
-    sample = normal_noise(3, (1000, 1001))
-    assert sample.dtype == np.float32
-    assert sample.mean() == pytest.approx(0, abs=0.005)
-    assert sample.std() == pytest.approx(1, abs=0.005)
-    assert (np.abs(sample) > 2).mean() == pytest.approx(0.0455, abs=0.001)
-    assert np.abs(np.corrcoef(sample[:, :-1].ravel(), sample[:, 1:].ravel())[0, 1]) < 0.005
 
 
 def test_a_scan_whose_rays_fail_says_so_and_the_next_one_is_as_if_nothing_had_been(world, renderer_of, monkeypatch):
