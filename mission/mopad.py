@@ -51,9 +51,9 @@ class Mopad:
         """What registration and localisation correct the odometry by."""
         self.news: list[str] = []
         """What was put in the robot's way, in words, for the record: it does not know."""
+        self._scanner = Scanner(scene.model, config.scanner, hidden_bodies=scene.robot_bodies)
         with ExitStack() as stack:  # what fails from here on closes the renderer
             renderer = stack.enter_context(Renderer(scene.model, hidden_bodies=scene.robot_bodies))
-            self._scanner = Scanner(renderer, config.scanner)
             self._camera = Camera(renderer, config.camera)
             self._owned = stack.pop_all()
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.beams import Hits
 from sim.noise import normal_noise
 
 # ---- The noise of the VZ-400, all of it. One standard deviation each.
@@ -52,61 +53,34 @@ class Receiver:
 
 
 def receive(
-    inverse_range: NDArray[np.float32],
-    albedo_db: NDArray[np.float32],
-    elevations: NDArray[np.float64],
-    receiver: Receiver,
-    rng: np.random.Generator,
+    hits: Hits, albedo_db: NDArray[np.float32], receiver: Receiver, rng: np.random.Generator
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Turn the exact picture into what the instrument reports.
+    """Turn what the beams meet into what the instrument reports.
 
     Args:
-        inverse_range: (E, A) of what each beam meets [1/m], above 0; columns all round at equal steps.
-        albedo_db: (E, A) its reflectance, square to the beam [dB].
-        elevations: (E,) of each row [rad].
+        hits: of (E, A) beams.
+        albedo_db: (ngeom + 1,) reflectance of each geom, square to the beam; the last one is for what is none [dB].
         receiver: how beams are received.
         rng: source of the noise; results do not depend on the number of cores.
 
     Returns:
         (E, A) ranges [m] and (E, A) reflectances [dB]; NaN where nothing came back.
     """
-    ranges, reflectance = np.empty_like(inverse_range), np.empty_like(inverse_range)
-    bands = [slice(start, min(start + _BAND, len(elevations))) for start in range(0, len(elevations), _BAND)]
+    ranges, reflectance = np.empty_like(hits.inverse_range), np.empty_like(hits.inverse_range)
+    bands = [slice(start, min(start + _BAND, len(ranges))) for start in range(0, len(ranges), _BAND)]
     seeds = rng.integers(2**63, size=len(bands))
 
     def band(rows: slice, seed: int) -> None:
-        np.divide(1, inverse_range[rows], out=ranges[rows])
-        loss = np.log1p(_incidence_tan2(inverse_range, elevations, rows))  # 10 log10(cos i) = -5/ln(10) ln(1 + tan2 i)
-        np.add(albedo_db[rows], loss * np.float32(-5 / np.log(10)), out=reflectance[rows])
-        _detect(ranges[rows], reflectance[rows], receiver, int(seed))
+        with np.errstate(divide="ignore"):  # nothing is infinitely far, and infinitely dark
+            np.divide(1, hits.inverse_range[rows], out=ranges[rows])
+            np.log(hits.cosine[rows], out=reflectance[rows])
+            reflectance[rows] *= np.float32(10 / np.log(10))  # Lambert's law
+            reflectance[rows] += albedo_db[hits.geoms[rows]]
+            _detect(ranges[rows], reflectance[rows], receiver, int(seed))
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(band, bands, seeds))
     return ranges, reflectance
-
-
-def _incidence_tan2(
-    inverse_range: NDArray[np.float32], elevations: NDArray[np.float64], rows: slice
-) -> NDArray[np.float32]:
-    """(rows, A) squared tangent of the angle of incidence.
-
-    On a plane with normal n at distance d the inverse range is n.beam / d, so that its slopes along elevation and
-    azimuth are the components of n across the beam. Of two one-sided differences the smaller one stays on the surface.
-    """
-    here = inverse_range[rows]
-    step = 2 * np.pi / here.shape[1]
-    above, below = max(rows.start - 1, 0), min(rows.stop + 1, len(inverse_range))
-    rise = np.abs(np.diff(inverse_range[above:below], axis=0))
-    rise = np.vstack([rise[:1]] * (above == rows.start) + [rise] + [rise[-1:]] * (below == rows.stop))
-    rise = np.minimum(rise[:-1], rise[1:])
-    run = np.abs(here - np.roll(here, 1, axis=1))
-    run = np.minimum(run, np.roll(run, -1, axis=1))
-    run /= np.cos(elevations[rows]).astype(np.float32)[:, None]
-    run *= run
-    rise *= rise
-    run += rise
-    run /= here * here * np.float32(step**2)
-    return run
 
 
 def _detect(ranges: NDArray[np.float32], reflectance: NDArray[np.float32], receiver: Receiver, seed: int) -> None:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.beams import BeamCaster
 from sim.echo import REFLECTANCE_NOISE_DB, Receiver, receive
-from sim.panorama import BeamCaster
-from sim.render import Renderer
 from sim.render.materials import materials_of
 from sim.scan import ELEVATION_TOP_DEG, Scan, ScannerParameters
 
@@ -28,7 +28,7 @@ class Pattern:
     rows: int
     """Beams from top to bottom."""
     columns: int
-    """Beams all round; a multiple of 6."""
+    """Beams all round."""
 
     def elevations(self) -> NDArray[np.float64]:
         """(rows,) elevation of each row, top first [rad]."""
@@ -52,16 +52,23 @@ PATTERNS: dict[str, Pattern] = {
 class Scanner:
     """A VZ-400 in one world."""
 
-    def __init__(self, renderer: Renderer, parameters: ScannerParameters | None = None) -> None:
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        parameters: ScannerParameters | None = None,
+        *,
+        hidden_bodies: Collection[int] = (),
+    ) -> None:
         """Take a scanner into use.
 
         Args:
-            renderer: of the world; what it hides, the scanner does not see.
+            model: the compiled world; shapes and colours are taken as they are now.
             parameters: how to scan.
+            hidden_bodies: ids of bodies never seen, such as the robot that carries the scanner.
         """
         self.parameters = parameters or ScannerParameters()
-        self._caster = BeamCaster(renderer)
-        self._albedo_db = _albedo_db(renderer.model)
+        self._caster = BeamCaster(model, hidden_bodies)
+        self._albedo_db = _albedo_db(model)
         self._receiver = Receiver(
             precision=self.parameters.precision if self.parameters.noise else 0.0,
             reflectance_noise=REFLECTANCE_NOISE_DB if self.parameters.noise else 0.0,
@@ -79,13 +86,13 @@ class Scanner:
         """
         pattern = PATTERNS[self.parameters.pattern]
         elevations, azimuths = pattern.elevations(), pattern.azimuths()
-        seen = self._caster.cast(data, world_from_scanner, elevations, azimuths, self._albedo_db)
-        ranges, reflectance = receive(*seen, elevations, self._receiver, rng)
+        hits = self._caster.cast(data, world_from_scanner, elevations, azimuths)
+        ranges, reflectance = receive(hits, self._albedo_db, self._receiver, rng)
         return Scan(elevations, azimuths, ranges, reflectance, ranges.size / BEAMS_PER_SECOND)
 
 
 def _albedo_db(model: mujoco.MjModel) -> NDArray[np.float32]:
-    """(ngeom + 1,) reflectance of each geom, square to the beam [dB].
+    """(ngeom + 1,) reflectance of each geom, square to the beam [dB]; the last one is for flexes and skins.
 
     An MJCF does not say how bright a surface is in the near infrared; the luminance of the geom's mean colour stands
     for it, one value a geom.

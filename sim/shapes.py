@@ -18,7 +18,7 @@ def triangulate(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarra
     kind, size = mujoco.mjtGeom(int(model.geom_type[geom])), model.geom_size[geom]
     match kind:
         case mujoco.mjtGeom.mjGEOM_BOX:
-            return _box(size)
+            return box(size)
         case mujoco.mjtGeom.mjGEOM_SPHERE:
             return _revolve(_arc(0.0) * size[0])
         case mujoco.mjtGeom.mjGEOM_ELLIPSOID:
@@ -46,7 +46,8 @@ def triangles_in_world(model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterab
     return corners
 
 
-def _box(half: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def box(half: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (8, 3) and triangles (12, 3) of a box about the origin, from half the lengths (3,) of its sides [m]."""
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     return signs * half, np.array([[a, b, c] for a, b, c, d in quads] + [[a, c, d] for a, b, c, d in quads])

@@ -8,7 +8,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from sim.render import Renderer
 from sim.scanner import Scanner, ScannerParameters
 from sim.scene import Scene, load_scene
 
@@ -82,9 +81,9 @@ def test_mopad_stands_on_its_ground_where_it_says(house: Scene) -> None:
 def test_its_surfaces_are_measured_where_rays_meet_them(house: Scene) -> None:
     place = np.eye(4)
     place[:3, 3] = 3, 2, 1.2
-    with Renderer(house.model, hidden_bodies=house.robot_bodies) as renderer:
-        scanner = Scanner(renderer, ScannerParameters(pattern="draft", noise=False))
-        scan = scanner.scan(house.data, place, np.random.default_rng(0))
+    parameters = ScannerParameters(pattern="draft", noise=False)
+    scanner = Scanner(house.model, parameters, hidden_bodies=house.robot_bodies)
+    scan = scanner.scan(house.data, place, np.random.default_rng(0))
     rng = np.random.default_rng(1)
     rows, columns = rng.integers(scan.ranges.shape[0], size=3000), rng.integers(scan.ranges.shape[1], size=3000)
     e, a = scan.elevations[rows], scan.azimuths[columns]

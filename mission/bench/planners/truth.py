@@ -10,14 +10,12 @@ seen when a scan has a return within 7 cm of its middle.
 
 from __future__ import annotations
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from mission.bench.planners.rooms import TrueRoom, closed
 from mission.rigid import Pose, transformed
 from mission.samples import place, sample_scan, thinned
-from sim.render import Renderer
 from sim.scanner import Scan, Scanner, ScannerParameters
 from sim.scene import Scene
 
@@ -76,21 +74,19 @@ def _seen_from(
     """Points (N, 3) of the room's surfaces in sight from anywhere in it, and their normals (N, 3)."""
     exact = ScannerParameters(pattern="draft", noise=False)
     shut_model, shut_data = closed(scene)
+    opened, shut = (Scanner(model, exact, hidden_bodies=scene.robot_bodies) for model in (scene.model, shut_model))
+    noiseless = np.random.default_rng(0)
     points, normals = [], []
-    with (
-        Renderer(scene.model, hidden_bodies=scene.robot_bodies) as opened,
-        Renderer(shut_model, hidden_bodies=scene.robot_bodies) as shut,
-    ):
-        for spot in _spread(room.places_in_world):
-            pose = np.eye(4)
-            pose[:3, 3] = spot + base_from_scanner[:3, 3]
-            scan = _scan(opened, exact, scene.data, pose)
-            same = abs(scan.ranges - _scan(shut, exact, shut_data, pose).ranges) < _SAME  # not where one is NaN
-            scan.ranges[~same] = np.nan
-            sample = place(sample_scan(scan), pose)
-            flat = np.isfinite(sample.normals_in_world[:, 0])
-            points.append(sample.points_in_world[flat].astype(np.float64))
-            normals.append(sample.normals_in_world[flat].astype(np.float64))
+    for spot in _spread(room.places_in_world):
+        pose = np.eye(4)
+        pose[:3, 3] = spot + base_from_scanner[:3, 3]
+        scan = opened.scan(scene.data, pose, noiseless)
+        same = abs(scan.ranges - shut.scan(shut_data, pose, noiseless).ranges) < _SAME  # not where one is NaN
+        scan.ranges[~same] = np.nan
+        sample = place(sample_scan(scan), pose)
+        flat = np.isfinite(sample.normals_in_world[:, 0])
+        points.append(sample.points_in_world[flat].astype(np.float64))
+        normals.append(sample.normals_in_world[flat].astype(np.float64))
     return np.concatenate(points), np.concatenate(normals)
 
 
@@ -102,10 +98,6 @@ def _spread(places: NDArray[np.float64]) -> NDArray[np.float64]:
         chosen.append(int(distance.argmax()))
         distance = np.minimum(distance, np.hypot(*(places - places[chosen[-1]]).T[:2]))
     return places[chosen]
-
-
-def _scan(renderer: Renderer, parameters: ScannerParameters, data: mujoco.MjData, pose: Pose) -> Scan:
-    return Scanner(renderer, parameters).scan(data, pose, np.random.default_rng(0))
 
 
 def _walls(points: NDArray[np.float64], upright: NDArray[np.bool_], top: float) -> NDArray[np.bool_]:

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mission.bench.speed import rivals
+from mission.bench.speed.floor import bare_renders
 from mission.bench.speed.timing import Timing, in_turns
 from mission.bench.speed.worlds import World
+from sim.beams import directions
 from sim.echo import MIN_RANGE
-from sim.panorama import bare_renders, directions
 from sim.scanner import PATTERNS, Pattern, Scanner, ScannerParameters
 
 PATTERN = "panorama_60"
@@ -54,7 +55,7 @@ def compare_casters(world: World, repeats: int) -> list[Caster]:
     slow: dict[str, Callable[[], object]] = {MULTI_RAY: rivals.multi_ray(world, beams @ turn.T)}
     if rivals.has_mujoco_lidar():
         slow[MUJOCO_LIDAR] = rivals.mujoco_lidar(world, elevations[few], azimuths[few])
-    fast: dict[str, Callable[[], object]] = {FLOOR: _floor(world, pattern), OURS: _scan(world)}
+    fast: dict[str, Callable[[], object]] = {FLOOR: lambda: bare_renders(world, pattern), OURS: _scan(world)}
     if rivals.has_open3d():
         rays = (directions(elevations, azimuths) @ turn.T).astype(np.float32)
         tried = {chunk: rivals.embree(world, rays, chunk) for chunk in rivals.CHUNKS}
@@ -70,14 +71,8 @@ def compare_casters(world: World, repeats: int) -> list[Caster]:
     return casters
 
 
-def _floor(world: World, pattern: Pattern) -> Callable[[], object]:
-    """The frames that a panorama is read from, rendered and thrown away."""
-    elevations, azimuths = pattern.elevations(), pattern.azimuths()
-    return lambda: bare_renders(world.renderer, world.data, world.world_from_scanner, elevations, azimuths)
-
-
-def _scan(world: World, *, noise: bool = True) -> Callable[[], object]:
-    scanner = Scanner(world.renderer, ScannerParameters(pattern=PATTERN, noise=noise))
+def _scan(world: World) -> Callable[[], object]:
+    scanner = Scanner(world.model, ScannerParameters(pattern=PATTERN), hidden_bodies=world.hidden_bodies)
     return lambda: scanner.scan(world.data, world.world_from_scanner, np.random.default_rng(0))
 
 
@@ -87,7 +82,8 @@ def _errors(world: World, pattern: Pattern) -> dict[str, tuple[float, int]]:
     rows, columns = rng.integers(pattern.rows, size=CHECKED), rng.integers(pattern.columns, size=CHECKED)
     beams = directions(pattern.elevations()[rows], pattern.azimuths()[columns]) @ world.world_from_scanner[:3, :3].T
     true, _ = rivals.multi_ray(world, beams)()
-    scanner = Scanner(world.renderer, ScannerParameters(pattern=PATTERN, noise=False))
+    parameters = ScannerParameters(pattern=PATTERN, noise=False)
+    scanner = Scanner(world.model, parameters, hidden_bodies=world.hidden_bodies)
     scan = scanner.scan(world.data, world.world_from_scanner, np.random.default_rng(0))
     errors = {OURS: _judge(scan.ranges[rows, columns], true)}
     if rivals.has_open3d():

@@ -87,7 +87,8 @@ def _cut(wall: Wall, width: float) -> Wall:
 def _scanned(world: World) -> Room:
     """The world as the mission hands it to the detector, by true poses."""
     config = MissionConfig()
-    scanner, camera = Scanner(world.renderer, config.scanner), Camera(world.renderer, config.camera)
+    scanner = Scanner(world.model, config.scanner, hidden_bodies=world.hidden_bodies)
+    camera = Camera(world.renderer, config.camera)
     views: list[View] = []
     samples = []
     for pose in _ring(world.world_from_scanner, max(VIEWS)):

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from mission.bench.speed.beams import PATTERN
+from mission.bench.speed.floor import bare_renders
 from mission.bench.speed.timing import Timing
 from mission.bench.speed.worlds import World, scene_world
 from mission.errors import MissionError
 from sim.camera import Camera
-from sim.panorama import bare_renders
 from sim.scanner import PATTERNS
 
 
@@ -81,9 +81,8 @@ def _bare_seconds(scene: str, summary: dict[str, Any]) -> float:
 
 
 def _render_once(world: World) -> float:
-    pattern = PATTERNS[PATTERN]
     start = perf_counter()
-    bare_renders(world.renderer, world.data, world.world_from_scanner, pattern.elevations(), pattern.azimuths())
+    bare_renders(world, PATTERNS[PATTERN])
     Camera(world.renderer).bare_renders(world.data, world.world_from_scanner)
     return perf_counter() - start
 

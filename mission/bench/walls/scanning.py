@@ -155,7 +155,7 @@ def _measurements(
     """What the instruments deliver at each scan place, and the true pose of the scanner there."""
     model, data = load(room)
     with Renderer(model) as renderer:
-        scanner, camera = Scanner(renderer, config.scanner), Camera(renderer, config.camera)
+        scanner, camera = Scanner(model, config.scanner), Camera(renderer, config.camera)
         for truth in _true_poses(room, model, data):
             yield truth, scanner.scan(data, truth, scanner_rng), camera.photograph(data, truth, camera_rng)
 

@@ -16,7 +16,6 @@ from mission.bench.planners.statistics import Count, comparison, mean_coverage, 
 from mission.bench.planners.truth import CELL, seen, visible_structure
 from mission.bench.walls.scanning import scanner_mount
 from mission.config import MissionConfig
-from sim.render import Renderer
 from sim.scanner import Scanner, ScannerParameters
 from sim.scene import load_scene
 
@@ -130,8 +129,8 @@ def test_a_scan_sees_all_but_the_discs_below_and_above_itself(two_rooms) -> None
     scene = load_scene(two_rooms())
     cells = visible_structure(scene, rooms_of(scene)[0], scanner_mount())
     pose = scene.world_from_base @ scanner_mount()
-    with Renderer(scene.model, hidden_bodies=scene.robot_bodies) as renderer:
-        scan = Scanner(renderer, ScannerParameters(pattern="draft")).scan(scene.data, pose, np.random.default_rng(0))
+    scanner = Scanner(scene.model, ScannerParameters(pattern="draft"), hidden_bodies=scene.robot_bodies)
+    scan = scanner.scan(scene.data, pose, np.random.default_rng(0))
     missed = cells[~seen(cells, scan, pose)]
     # Below -40 deg the floor is out of view, above 60 deg or within 1.5 m the ceiling: discs round the scanner, into
     # which the returns at their rims reach by 7 cm.
