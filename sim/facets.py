@@ -142,12 +142,11 @@ def _turn(angle: float) -> float:
 
 
 @compiled
-def _rows_within(outlines: Outlines, t: int, column: int, grid: Grid) -> tuple[int, int]:
+def _rows_within(edges: NDArray[np.float64], cos: float, sin: float, grid: Grid) -> tuple[int, int]:
     """First and last row of the beams of a column that pass through a triangle."""
     low, high = -np.inf, np.inf  # of the tangent of the elevation
     for k in range(3):
-        level = outlines.edges[t, k, 0] * grid.cos_azimuth[column] + outlines.edges[t, k, 1] * grid.sin_azimuth[column]
-        upward = outlines.edges[t, k, 2]
+        level, upward = edges[k, 0] * cos + edges[k, 1] * sin, edges[k, 2]
         if upward > 0:
             low = max(low, -level / upward)
         elif upward < 0:
@@ -175,25 +174,19 @@ def draw_facets(outlines: Outlines, grid: Grid, strip: Strip) -> None:
         for turn in (0, columns):  # a window that begins before the grid's end may go on at its start
             start = max(outlines.windows[t, 0] - turn, strip.first)
             for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
-                rows = _rows_within(outlines, t, column, grid)
-                if rows[0] <= rows[1]:
-                    _draw_column(outlines, t, column, rows, grid, strip)
-
-
-@compiled
-def _draw_column(outlines: Outlines, t: int, column: int, rows: tuple[int, int], grid: Grid, strip: Strip) -> None:
-    plane, owner, distance = outlines.planes[t], outlines.owners[t], outlines.distances[t]
-    level = plane[0] * grid.cos_azimuth[column] + plane[1] * grid.sin_azimuth[column]
-    upward = plane[2]
-    k = column - strip.first
-    inverse_range, cosine, geoms = strip.inverse_range[k], strip.cosine[k], strip.geoms[k]
-    for row in range(rows[0], rows[1] + 1):
-        value = level * grid.cos_elevation[row] + upward * grid.sin_elevation[row]
-        near = np.float32(value)
-        nearer = near > inverse_range[row]
-        inverse_range[row] = near if nearer else inverse_range[row]
-        cosine[row] = np.float32(value * distance) if nearer else cosine[row]
-        geoms[row] = owner if nearer else geoms[row]
+                cos, sin = grid.cos_azimuth[column], grid.sin_azimuth[column]
+                first, last = _rows_within(outlines.edges[t], cos, sin, grid)
+                level = outlines.planes[t, 0] * cos + outlines.planes[t, 1] * sin
+                upward, distance, owner = outlines.planes[t, 2], outlines.distances[t], outlines.owners[t]
+                k = column - strip.first
+                inverse_range, cosine, geoms = strip.inverse_range[k], strip.cosine[k], strip.geoms[k]
+                for row in range(first, last + 1):
+                    value = level * grid.cos_elevation[row] + upward * grid.sin_elevation[row]
+                    near = np.float32(value)
+                    nearer = near > inverse_range[row]
+                    inverse_range[row] = near if nearer else inverse_range[row]
+                    cosine[row] = np.float32(value * distance) if nearer else cosine[row]
+                    geoms[row] = owner if nearer else geoms[row]
 
 
 def spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.int32]:
@@ -218,7 +211,8 @@ def _spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.i
         for turn in (0, columns):
             start = max(outlines.windows[t, 0] - turn, first)
             for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
-                top, bottom = _rows_within(outlines, t, column, grid)
+                cos, sin = grid.cos_azimuth[column], grid.sin_azimuth[column]
+                top, bottom = _rows_within(outlines.edges[t], cos, sin, grid)
                 if top <= bottom:
                     found[count, 0], found[count, 1] = outlines.owners[t], column
                     found[count, 2], found[count, 3] = top, bottom

@@ -43,37 +43,41 @@ def draw_round_bodies(spans: NDArray[np.int32], bodies: RoundBodies, grid: Grid,
         strip: some of its columns; changed in place.
     """
     for i in range(len(spans)):
+        body, column = spans[i, 0], spans[i, 1]
+        kind, half_length, turn = bodies.kinds[body], bodies.half_lengths[body], bodies.body_from_scanner[body]
+        eye = bodies.origins[body, 0], bodies.origins[body, 1], bodies.origins[body, 2]
+        radii = bodies.radii[body]
+        level = _level(turn, grid.cos_azimuth[column], grid.sin_azimuth[column])
+        inverse_range = strip.inverse_range[column - strip.first]
+        cosine, geoms = strip.cosine[column - strip.first], strip.geoms[column - strip.first]
         for row in range(spans[i, 2], spans[i, 3] + 1):
-            _draw_beam(bodies, spans[i, 0], spans[i, 1], row, grid, strip)
+            cos, sin = grid.cos_elevation[row], grid.sin_elevation[row]
+            x = level[0] * cos + turn[0, 2] * sin
+            y = level[1] * cos + turn[1, 2] * sin
+            z = level[2] * cos + turn[2, 2] * sin
+            reach, nx, ny, nz = _meet(kind, half_length, eye, (x, y, z))
+            if 1 / reach > inverse_range[row]:
+                length = math.sqrt((nx / radii[0]) ** 2 + (ny / radii[1]) ** 2 + (nz / radii[2]) ** 2)
+                inverse_range[row], geoms[row] = 1 / reach, bodies.geoms[body]
+                cosine[row] = abs(nx * x + ny * y + nz * z) / length
 
 
 @compiled
-def _draw_beam(bodies: RoundBodies, body: int, column: int, row: int, grid: Grid, strip: Strip) -> None:
-    x = grid.cos_elevation[row] * grid.cos_azimuth[column]
-    y = grid.cos_elevation[row] * grid.sin_azimuth[column]
-    z = grid.sin_elevation[row]
-    turn, eye, radii = bodies.body_from_scanner[body], bodies.origins[body], bodies.radii[body]
-    dx = turn[0, 0] * x + turn[0, 1] * y + turn[0, 2] * z
-    dy = turn[1, 0] * x + turn[1, 1] * y + turn[1, 2] * z
-    dz = turn[2, 0] * x + turn[2, 1] * y + turn[2, 2] * z
-    reach, nx, ny, nz = _meet(bodies.kinds[body], bodies.half_lengths[body], eye, dx, dy, dz)
-    k = column - strip.first
-    if 1 / reach > strip.inverse_range[k, row]:
-        strip.inverse_range[k, row] = 1 / reach
-        length = math.sqrt((nx / radii[0]) ** 2 + (ny / radii[1]) ** 2 + (nz / radii[2]) ** 2)
-        strip.cosine[k, row] = abs(nx * dx + ny * dy + nz * dz) / length
-        strip.geoms[k, row] = bodies.geoms[body]
+def _level(turn: NDArray[np.float64], x: float, y: float) -> tuple[float, float, float]:
+    """A level direction in the body's frame."""
+    return turn[0, 0] * x + turn[0, 1] * y, turn[1, 0] * x + turn[1, 1] * y, turn[2, 0] * x + turn[2, 1] * y
 
 
 @compiled
 def _meet(
-    kind: int, half_length: float, eye: NDArray[np.float64], dx: float, dy: float, dz: float
+    kind: int, half_length: float, eye: tuple[float, float, float], beam: tuple[float, float, float]
 ) -> tuple[float, float, float, float]:
     """Range at which a beam enters, or leaves if it starts inside, and the normal there, in the body's frame.
 
     The range is infinite where the beam passes by. A pill is a rod without lids between two balls, each valid where
     the body ends.
     """
+    dx, dy, dz = beam
     best, nx, ny, nz = np.inf, 0.0, 0.0, 1.0
     if kind != BALL:
         for reach in _roots(dx * dx + dy * dy, eye[0] * dx + eye[1] * dy, eye[0] ** 2 + eye[1] ** 2 - 1):
