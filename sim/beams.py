@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Collection
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.facets import Grid, Strip, draw_facets, outlined, spans
-from sim.round_bodies import draw_round_bodies
+from sim.compiled import compiled
+from sim.facets import panorama
+from sim.sight import Seen, Sight
 from sim.surfaces import Surfaces
 
-_STRIP = 128
+_STRIP = 64
 """Columns drawn at a time, so that they stay in the processor's cache."""
 
 
-@dataclass(frozen=True, eq=False)
-class Hits:
+class Hits(NamedTuple):
     """What the beams of a panorama meet."""
 
     inverse_range: NDArray[np.float32]
@@ -58,29 +59,30 @@ class BeamCaster:
             elevations: (E,) of the rows, downwards at equal steps, between the poles [rad].
             azimuths: (A,) of the columns, all round at equal steps from 0 [rad].
         """
-        flat, round_boxes, round_bodies = self._surfaces.around(data, world_from_scanner)
-        facets, boxes = outlined(flat, len(azimuths)), outlined(round_boxes, len(azimuths))
-        grid = Grid(
-            *(np.cos(azimuths), np.sin(azimuths), np.cos(elevations), np.sin(elevations)),
-            top=float(elevations[0]),
-            step=float(elevations[0] - elevations[-1]) / (len(elevations) - 1),
-        )
         shape = len(elevations), len(azimuths)
         hits = Hits(np.empty(shape, np.float32), np.empty(shape, np.float32), np.empty(shape, np.int32))
+        sight = Sight(self._surfaces, data, world_from_scanner, panorama(elevations, azimuths))
 
         def draw(first: int) -> None:
             columns = slice(first, min(first + _STRIP, len(azimuths)))
-            size = columns.stop - first, len(elevations)
-            strip = Strip(first, np.zeros(size, np.float32), np.zeros(size, np.float32), np.full(size, -1, np.int32))
-            draw_facets(facets, grid, strip)
-            draw_round_bodies(spans(boxes, grid, first, columns.stop), round_bodies, grid, strip)
-            hits.inverse_range[:, columns] = strip.inverse_range.T
-            hits.cosine[:, columns] = strip.cosine.T
-            hits.geoms[:, columns] = strip.geoms.T
+            _turn_over(sight.seen(columns), first, hits)
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(draw, range(0, len(azimuths), _STRIP)))
         return hits
+
+
+@compiled
+def _turn_over(seen: Seen, first: int, hits: Hits) -> None:
+    """Put what columns of beams meet, one after the other, into rows."""
+    columns, rows = seen.geoms.shape
+    for row in range(rows):
+        for k in range(columns):
+            x, y, z = seen.slopes[0, k, row], seen.slopes[1, k, row], seen.slopes[2, k, row]
+            inverse_range = seen.inverse_range[k, row]
+            hits.inverse_range[row, first + k] = inverse_range
+            hits.cosine[row, first + k] = inverse_range / math.sqrt(x * x + y * y + z * z) if inverse_range > 0 else 0
+            hits.geoms[row, first + k] = seen.geoms[k, row]
 
 
 def directions(elevations: NDArray[np.float64], azimuths: NDArray[np.float64]) -> NDArray[np.float64]:

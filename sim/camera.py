@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 
 from sim.bands import bands
 from sim.developing import Exposure, develop, linear
+from sim.facets import picture
 from sim.photo import CameraParameters, Photo
-from sim.render import Depth, Renderer, View, looking_along
+from sim.render import Renderer, View, looking_along
 from sim.render.materials import materials_of
-from sim.shading import NEIGHBOURS, Gloss, Window, flash_light, seen_from_flash
+from sim.shading import Gloss, Window, flash_light, seen_from_flash
+from sim.sight import Sight
+from sim.surfaces import Surfaces
 
 GUIDE_NUMBER = 17.0
 """Aperture x distance of a right exposure by the built-in flash at full power, ISO 200 [m]."""
@@ -34,6 +37,8 @@ paint, lights a wall as evenly as matt light does, and is no highlight."""
 
 _NEAREST = 0.5
 """Nearest surface that the flash's view covers up to the edge of the picture [m]."""
+_CAMERA_FROM_VIEW = np.array([[0, 0, 1, 0], [0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1]], float)
+"""OpenCV's axes, right, down and forward, from those of a grid of beams: forward, up, right."""
 
 
 class Camera:
@@ -51,8 +56,10 @@ class Camera:
         """
         self.parameters = parameters or CameraParameters()
         self._renderer = renderer
+        self._surfaces = Surfaces(renderer.model, renderer.hidden_bodies)
         self._materials = materials_of(renderer.model)
-        self._window = _window(self.parameters)
+        across, up = (tangents.astype(np.float32) for tangents in _tangents(self.parameters))
+        self._window = Window(*self.parameters.focal_px, across[None], up[:, None])
 
     def photograph(
         self, data: mujoco.MjData, world_from_scanner: NDArray[np.float64], rng: np.random.Generator
@@ -67,79 +74,57 @@ class Camera:
         shots = self.parameters.shots
         seeds = rng.integers(2**63, size=shots)
         poses = [self._scanner_from_camera(2 * np.pi * k / shots) for k in range(shots)]
-        with ThreadPoolExecutor(os.cpu_count()) as pool:  # shading goes on while the next shot is rendered
-            pending = [pool.submit(self._shade, *self._render(data, world_from_scanner @ pose)) for pose in poses]
+        with ThreadPoolExecutor(os.cpu_count()) as pool:  # shots are lit while the next one's colours are rendered
+            turn = [world_from_scanner @ pose for pose in poses]
+            pending = [pool.submit(self._expose, self._albedo(data, pose), data, pose) for pose in turn]
             exposed = [shot.result() for shot in pending]
             gain = _gain(exposed)
             return tuple(pool.map(lambda k: self._develop(exposed[k], gain, poses[k], int(seeds[k])), range(shots)))
-
-    def bare_renders(
-        self, data: mujoco.MjData, world_from_scanner: NDArray[np.float64], *, colours_only: bool = False
-    ) -> None:
-        """Render the pictures that `photograph` works on, and throw them away: what none can do without.
-
-        Args:
-            data: state of the world.
-            world_from_scanner: (4, 4) pose of the scanner under the camera.
-            colours_only: leave out the depth from the lens and from the flash.
-        """
-        for k in range(self.parameters.shots):
-            pose = world_from_scanner @ self._scanner_from_camera(2 * np.pi * k / self.parameters.shots)
-            if colours_only:
-                self._renderer.albedo(data, self._view(pose, margin=(0, 0)))
-            else:
-                self._render(data, pose)
 
     def _scanner_from_camera(self, azimuth: float) -> NDArray[np.float64]:
         pose = looking_along(azimuth)
         pose[2, 3] = self.parameters.rise
         return pose
 
-    def _render(
-        self, data: mujoco.MjData, world_from_camera: NDArray[np.float64]
-    ) -> tuple[NDArray[np.uint8], Depth, Depth]:
-        """Albedo and depth from the lens, and depth from the flash through a window wider by the margin."""
-        lens = self._view(world_from_camera, margin=(0, 0))
+    def _albedo(self, data: mujoco.MjData, world_from_camera: NDArray[np.float64]) -> NDArray[np.uint8]:
+        """(H, W, 3) sRGB of the surfaces, top row first."""
+        size = self.parameters.width, self.parameters.height
+        right, top = np.array(size) / 2 / self.parameters.focal_px
+        return self._renderer.albedo(data, View(world_from_camera, -right, right, -top, top, *size))[::-1].copy()
+
+    def _expose(
+        self, albedo: NDArray[np.uint8], data: mujoco.MjData, world_from_camera: NDArray[np.float64]
+    ) -> Exposure:
+        """Light a shot; in any thread, as no two shots share anything."""
         world_from_flash = world_from_camera.copy()
         world_from_flash[:3, 3] += world_from_camera[:3, :3] @ [FLASH[0], -FLASH[1], 0]  # OpenCV's y is down
-        flash = self._view(world_from_flash, margin=self._margin)
-        renderer = self._renderer
-        return renderer.albedo(data, lens), renderer.depth(data, lens), renderer.depth(data, flash)
+        from_flash = self._sight(data, world_from_flash, self._margin)
+        flash_inverse_depth = from_flash.inverse_ranges(slice(0, self.parameters.height + 2 * self._margin[1]))
+        lens = self._sight(data, world_from_camera)
+        materials, ambient = self._materials, np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
+        light, gloss = np.empty((2, *albedo.shape[:2]), np.float32)
+        mirrors = np.empty(albedo.shape[:2], bool)
+        for rows in bands(albedo.shape):
+            seen, window = lens.seen(rows), self._window.part(rows)
+            first = self._margin[0], self._margin[1] + rows.start
+            reached = seen_from_flash(seen.inverse_range, flash_inverse_depth, FLASH, window, first)
+            shine = Gloss(*(table.take(seen.geoms, mode="wrap") for table in (materials.specular, materials.exponent)))
+            lit = flash_light(seen, reached, FLASH, window, shine)
+            light[rows], gloss[rows], mirrors[rows] = lit.diffuse + ambient, lit.gloss, shine.exponent > SHEEN
+        return Exposure(albedo, light, gloss, mirrors)
 
-    def _view(self, world_from_view: NDArray[np.float64], margin: tuple[int, int]) -> View:
-        width, height = self.parameters.width + 2 * margin[0], self.parameters.height + 2 * margin[1]
-        focal_x, focal_y = self.parameters.focal_px
-        across, up = width / 2 / focal_x, height / 2 / focal_y
-        return View(world_from_view, -across, across, -up, up, width, height)
+    def _sight(
+        self, data: mujoco.MjData, world_from_camera: NDArray[np.float64], margin: tuple[int, int] = (0, 0)
+    ) -> Sight:
+        """The rows of a picture, larger than a photograph by a margin, as columns of beams."""
+        across, up = _tangents(self.parameters, margin)
+        return Sight(self._surfaces, data, world_from_camera @ _CAMERA_FROM_VIEW, picture(up, across))
 
     @property
     def _margin(self) -> tuple[int, int]:
         """Columns and rows of parallax between lens and flash at the nearest surface [px]."""
         focal_x, focal_y = self.parameters.focal_px
         return math.ceil(focal_x * abs(FLASH[0]) / _NEAREST) + 1, math.ceil(focal_y * abs(FLASH[1]) / _NEAREST) + 1
-
-    def _shade(self, albedo: NDArray[np.uint8], lens: Depth, flash: Depth) -> Exposure:
-        """Light a rendered shot, band by band; in any thread, as no two shots share anything."""
-        scale = np.float32(self._renderer.inverse_depth_scale)
-        offset = np.float32(self._renderer.inverse_depth_offset)
-        specular, exponent = self._materials.specular[lens.geom_ids], self._materials.exponent[lens.geom_ids]
-        flash_inverse_depth = flash.raw * scale + offset
-        ambient = np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
-        height, width = lens.raw.shape
-        light, gloss = np.empty((2, height, width), np.float32)
-        mirrors = np.empty((height, width), bool)
-        for rows in bands(lens.raw.shape):
-            near = slice(max(rows.start - NEIGHBOURS, 0), rows.stop + NEIGHBOURS)
-            inner = slice(rows.start - near.start, rows.stop - near.start)
-            inverse_depth = lens.raw[near] * scale + offset
-            window = self._window.part(near)
-            first = self._margin[0], self._margin[1] + near.start
-            seen = seen_from_flash(inverse_depth, flash_inverse_depth, FLASH, window, first)
-            shine = Gloss(specular.take(lens.segments[near]), exponent.take(lens.segments[near]))
-            lit = flash_light(inverse_depth, seen, FLASH, window, shine)
-            light[rows], gloss[rows] = lit.diffuse[inner] + ambient, lit.gloss[inner]
-            mirrors[rows] = shine.exponent[inner] > SHEEN
-        return Exposure(albedo, light, gloss, mirrors)
 
     def _develop(self, exposed: Exposure, gain: float, scanner_from_camera: NDArray[np.float64], seed: int) -> Photo:
         image, true_gloss = develop(exposed, gain, seed if self.parameters.noise else None)
@@ -149,11 +134,14 @@ class Camera:
         return Photo(image, intrinsics, scanner_from_camera, true_gloss)
 
 
-def _window(parameters: CameraParameters) -> Window:
-    focal_x, focal_y = parameters.focal_px
-    across = (np.arange(parameters.width) + 0.5 - parameters.width / 2) / focal_x
-    up = (np.arange(parameters.height) + 0.5 - parameters.height / 2) / focal_y
-    return Window(focal_x, focal_y, across.astype(np.float32)[None], up.astype(np.float32)[:, None])
+def _tangents(
+    parameters: CameraParameters, margin: tuple[int, int] = (0, 0)
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Of the pixels' centres, columns to the right and rows upward, so many more of them to either side."""
+    (focal_x, focal_y), (width, height) = parameters.focal_px, (parameters.width, parameters.height)
+    across = (np.arange(-margin[0], width + margin[0], dtype=np.float64) + 0.5 - width / 2) / focal_x
+    up = (height / 2 - 0.5 - np.arange(-margin[1], height + margin[1], dtype=np.float64)) / focal_y
+    return across, up
 
 
 def _gain(shots: list[Exposure]) -> float:

@@ -16,6 +16,6 @@ def compiled(function: Callable[..., Any]) -> Any:
     must not depend on compiled functions and constants of other files.
     """
     try:
-        return numba.njit(nogil=True, cache=True)(function)
+        return numba.njit(nogil=True, cache=True, error_model="numpy")(function)
     except RuntimeError:  # there is no place for the cache
-        return numba.njit(nogil=True)(function)
+        return numba.njit(nogil=True, error_model="numpy")(function)

@@ -1,4 +1,4 @@
-"""The D90's sensor and raw converter: from the light on the sensor to a picture of 8 bits."""
+"""The D90's sensor and raw converter: from the light on the sensor to a picture of 8 bits; top rows come first."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Image = NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class Exposure:
-    """What falls on the sensor for a flash of one unit; bottom row first."""
+    """What falls on the sensor for a flash of one unit."""
 
     albedo: NDArray[np.uint8]
     """(H, W, 3) sRGB"""
@@ -50,7 +50,7 @@ def develop(exposed: Exposure, gain: float, seed: int | None) -> tuple[NDArray[n
         seed: of the noise; None for none.
 
     Returns:
-        (H, W, 3) sRGB, top row first; (H, W) levels by which highlights brighten it, noise aside.
+        (H, W, 3) sRGB; (H, W) levels by which highlights brighten it, noise aside.
     """
     image, brightening = np.empty_like(exposed.albedo), np.empty_like(exposed.albedo[..., 0])
     noise = np.random.PCG64(seed) if seed is not None else None
@@ -61,12 +61,10 @@ def develop(exposed: Exposure, gain: float, seed: int | None) -> tuple[NDArray[n
         highlight = np.flatnonzero(exposed.mirrors[rows] & (shine > 1 / LEVELS))
         matt = _pixels(signal, highlight)
         signal += _grey(shine)
-        # OpenGL's bottom row first to OpenCV's top row first
-        upright = slice(len(image) - rows.stop, len(image) - rows.start)
-        brightening[upright] = _brightening(matt, _pixels(signal, highlight), highlight, shine.shape)[::-1]
+        brightening[rows] = _brightening(matt, _pixels(signal, highlight), highlight, shine.shape)
         if noise is not None:
             signal += _noise(signal, noise)
-        image[upright] = _srgb(signal)[::-1]
+        image[rows] = _srgb(signal)
     return image, brightening
 
 

@@ -1,9 +1,9 @@
-"""Triangles drawn on a scanner's own grid of beams, where every depth is that of an exact ray.
+"""Triangles drawn on a grid of beams, where every depth is that of an exact ray.
 
-A beam at azimuth a and elevation e points along cos(e) (cos(a), sin(a), tan(e)). So each edge of a triangle bounds
-tan(e) in a column of beams by a quotient, and the rows within follow from two arc tangents; what the neighbour on the
-other side of an edge computes are the same numbers, and no beam falls between them. The inverse range over a row is
-n.beam / n.vertex for the normal n.
+The beam of a column and a row points along level (ahead, aside, rise / level): in a column, each edge of a triangle
+bounds rise / level by a quotient, and the rows within follow. What the neighbour on the other side of an edge computes
+are the same numbers, so no beam falls between them. Along a beam the inverse range is n.beam / n.vertex for the
+triangle's normal n.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ BOTH, FRONT, BACK = range(3)
 """Sides on which a beam meets a triangle; seen from its front, the corners run anticlockwise."""
 
 _EDGE_ON = 1e-7
-"""A triangle whose plane passes the scanner this near is not seen [m]."""
+"""A triangle whose plane passes the origin of the beams this near is not met [m]."""
 
 
 class Triangles(NamedTuple):
-    """Triangles in the scanner's frame."""
+    """Triangles in the frame of the beams."""
 
     vertices: NDArray[np.float64]
     """(V, 3) [m]"""
@@ -37,31 +37,36 @@ class Triangles(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """The directions of a panorama."""
+    """Beams from the origin: (ahead[column] level[row], aside[column] level[row], rise[row])."""
 
-    cos_azimuth: NDArray[np.float64]
-    """(A,) of the columns, all round at equal steps from azimuth 0."""
-    sin_azimuth: NDArray[np.float64]
-    cos_elevation: NDArray[np.float64]
-    """(E,) of the rows, at equal steps from the top."""
-    sin_elevation: NDArray[np.float64]
-    top: float
-    """Elevation of the first row [rad]."""
-    step: float
-    """Between rows [rad]."""
+    ahead: NDArray[np.float64]
+    """(C,)"""
+    aside: NDArray[np.float64]
+    """(C,)"""
+    level: NDArray[np.float64]
+    """(R,)"""
+    rise: NDArray[np.float64]
+    """(R,)"""
+    first_column: float
+    """Azimuth of the first column [rad]; in a picture its tangent, aside / ahead."""
+    column_step: float
+    """From each column to the next."""
+    first_row: float
+    """Elevation of the first row [rad]; in a picture its tangent, rise / level."""
+    row_step: float
+    is_panorama: bool
+    """Columns all round at equal angles; otherwise a picture, columns and rows at equal tangents."""
 
 
 class Outlines(NamedTuple):
     """Triangles made ready to be drawn."""
 
     edges: NDArray[np.float64]
-    """(T, 3, 3) normals of the planes through the scanner and each edge, pointing to the triangle's side."""
+    """(T, 3, 3) normals of the planes through the origin and each edge, pointing to the triangle's side."""
     planes: NDArray[np.float64]
-    """(T, 3) normals, of a length that makes the product with a beam the inverse range [1/m]."""
-    distances: NDArray[np.float64]
-    """(T,) of the triangles' planes from the scanner [m]; times an inverse range, the cosine of the incidence."""
+    """(T, 3) normals, of a length that makes the product with a beam its inverse range [1/m]."""
     windows: NDArray[np.int32]
-    """(T, 2) first column, from 0 to A - 1, and last one, which may lie beyond A; before the first if not seen."""
+    """(T, 2) first column and last one, which may lie a turn beyond the grid's last; before the first if not seen."""
     owners: NDArray[np.int32]
     """(T,) as `Triangles` has them."""
 
@@ -72,67 +77,99 @@ class Strip(NamedTuple):
     first: int
     """Column."""
     inverse_range: NDArray[np.float32]
-    """(columns, E) [1/m]"""
-    cosine: NDArray[np.float32]
-    """(columns, E) of the angle between beam and normal."""
-    geoms: NDArray[np.int32]
-    """(columns, E)"""
+    """(columns, R) in beams' lengths [1/m]; 0 where there is nothing."""
+    surfaces: NDArray[np.int32]
+    """(columns, R) index of a triangle, or of a round body plus the number of triangles; -1 where there is nothing."""
 
 
-def outlined(triangles: Triangles, columns: int) -> Outlines:
-    """Make triangles ready to be drawn on a grid of so many columns."""
+def panorama(elevations: NDArray[np.float64], azimuths: NDArray[np.float64]) -> Grid:
+    """Unit beams along (E,) elevations at equal steps and (A,) azimuths all round at equal steps [rad]."""
+    return Grid(
+        *(np.cos(azimuths), np.sin(azimuths), np.cos(elevations), np.sin(elevations)),
+        *(float(azimuths[0]), 2 * math.pi / len(azimuths), float(elevations[0]), _step(elevations)),
+        is_panorama=True,
+    )
+
+
+def picture(asides: NDArray[np.float64], rises: NDArray[np.float64]) -> Grid:
+    """Beams (1, aside, rise) to the pixels of a picture, both at equal steps; inverse ranges are inverse depths."""
+    return Grid(
+        *(np.ones(len(asides)), asides, np.ones(len(rises)), rises),
+        *(float(asides[0]), _step(asides), float(rises[0]), _step(rises)),
+        is_panorama=False,
+    )
+
+
+def _step(values: NDArray[np.float64]) -> float:
+    return float(values[-1] - values[0]) / (len(values) - 1)
+
+
+def outlined(triangles: Triangles, grid: Grid) -> Outlines:
+    """Make triangles ready to be drawn."""
     count = len(triangles.corners)
     outlines = Outlines(
         edges=np.empty((count, 3, 3)),
         planes=np.empty((count, 3)),
-        distances=np.empty(count),
         windows=np.empty((count, 2), np.int32),
         owners=triangles.owners,
     )
-    _outline(triangles, columns, outlines)
+    _outline(triangles, np.arctan2(triangles.vertices[:, 1], triangles.vertices[:, 0]), grid, outlines)
     return outlines
 
 
 @compiled
-def _outline(triangles: Triangles, columns: int, outlines: Outlines) -> None:
+def _outline(triangles: Triangles, azimuths: NDArray[np.float64], grid: Grid, outlines: Outlines) -> None:
     for t in range(len(triangles.corners)):
-        outlines.windows[t, 0], outlines.windows[t, 1] = 0, -1
-        a, b, c = triangles.corners[t]
+        a, b, c = triangles.corners[t, 0], triangles.corners[t, 1], triangles.corners[t, 2]
+        first, last = _window(azimuths[a], azimuths[b], azimuths[c], grid)
+        outlines.windows[t, 0], outlines.windows[t, 1] = first, last
+        if first > last:
+            continue
         p, q, r = triangles.vertices[a], triangles.vertices[b], triangles.vertices[c]
-        x, y, z = _cross(q[0] - p[0], q[1] - p[1], q[2] - p[2], r[0] - p[0], r[1] - p[1], r[2] - p[2])
-        length = math.sqrt(x * x + y * y + z * z)
-        depth = x * p[0] + y * p[1] + z * p[2]  # above 0 where the scanner is behind the triangle
+        x, y, z = _cross((q[0] - p[0], q[1] - p[1], q[2] - p[2]), (r[0] - p[0], r[1] - p[1], r[2] - p[2]))
+        depth = x * p[0] + y * p[1] + z * p[2]  # above 0 where the origin is behind the triangle
         side = triangles.sides[t]
-        if abs(depth) <= _EDGE_ON * length or (side == FRONT and depth > 0) or (side == BACK and depth < 0):
+        edge_on = abs(depth) <= _EDGE_ON * math.sqrt(x * x + y * y + z * z)
+        if edge_on or (side == FRONT and depth > 0) or (side == BACK and depth < 0):
+            outlines.windows[t, 1] = first - 1
             continue
         outlines.planes[t, 0], outlines.planes[t, 1], outlines.planes[t, 2] = x / depth, y / depth, z / depth
-        outlines.distances[t] = abs(depth) / length
         sign = 1.0 if depth > 0 else -1.0
         for k, (start, end) in enumerate(((p, q), (q, r), (r, p))):
-            x, y, z = _cross(start[0], start[1], start[2], end[0], end[1], end[2])
+            x, y, z = _cross((start[0], start[1], start[2]), (end[0], end[1], end[2]))
             outlines.edges[t, k, 0], outlines.edges[t, k, 1], outlines.edges[t, k, 2] = sign * x, sign * y, sign * z
-        outlines.windows[t, 0], outlines.windows[t, 1] = _window(p, q, r, columns)
 
 
 @compiled
-def _cross(ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> tuple[float, float, float]:
-    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+def _cross(a: tuple[float, float, float], b: tuple[float, float, float]) -> tuple[float, float, float]:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @compiled
-def _window(p: NDArray[np.float64], q: NDArray[np.float64], r: NDArray[np.float64], columns: int) -> tuple[int, int]:
-    """First and last column that a triangle can be seen in: all of them where it is above or below the scanner."""
-    start = math.atan2(p[1], p[0])
-    second = math.atan2(q[1], q[0])
-    third = math.atan2(r[1], r[0])
-    to_second, to_third, back = _turn(second - start), _turn(third - second), _turn(start - third)
-    if abs(to_second + to_third + back) > 1 or max(abs(to_second), abs(to_third), abs(back)) > 3.14159:
-        return 0, columns - 1
-    per_radian = columns / (2 * math.pi)
-    first = int(math.floor((start + min(0.0, to_second, to_second + to_third)) * per_radian))
-    last = int(math.ceil((start + max(0.0, to_second, to_second + to_third)) * per_radian))
-    shift = first % columns - first
-    return first + shift, last + shift
+def _window(a: float, b: float, c: float, grid: Grid) -> tuple[int, int]:
+    """First and last column that a triangle can be seen in, from the azimuths of its corners [rad].
+
+    All of them where it is straight above or below the origin.
+    """
+    to_b, to_c, back = _turn(b - a), _turn(c - b), _turn(a - c)
+    if abs(to_b + to_c + back) > 1 or max(abs(to_b), abs(to_c), abs(back)) > 3.14159:
+        return 0, len(grid.ahead) - 1
+    low, high = a + min(0.0, to_b, to_b + to_c), a + max(0.0, to_b, to_b + to_c)
+    if grid.is_panorama:
+        first = int(math.floor((low - grid.first_column) / grid.column_step))
+        last = int(math.ceil((high - grid.first_column) / grid.column_step))
+        return first % len(grid.ahead), last - first + first % len(grid.ahead)
+    end = grid.first_column + (len(grid.ahead) - 1) * grid.column_step
+    limit = math.atan(max(abs(grid.first_column), abs(end)) + 1e-3)
+    left, right = np.inf, -np.inf
+    for turn in (-2 * math.pi, 0.0, 2 * math.pi):
+        if max(low + turn, -limit) <= min(high + turn, limit):
+            left, right = min(left, max(low + turn, -limit)), max(right, min(high + turn, limit))
+    if left > right:
+        return 0, -1
+    one = (math.tan(left) - grid.first_column) / grid.column_step
+    other = (math.tan(right) - grid.first_column) / grid.column_step
+    return max(int(math.floor(min(one, other))), 0), min(int(math.ceil(max(one, other))), len(grid.ahead) - 1)
 
 
 @compiled
@@ -142,11 +179,11 @@ def _turn(angle: float) -> float:
 
 
 @compiled
-def _rows_within(edges: NDArray[np.float64], cos: float, sin: float, grid: Grid) -> tuple[int, int]:
+def _rows_within(edges: NDArray[np.float64], ahead: float, aside: float, grid: Grid) -> tuple[int, int]:
     """First and last row of the beams of a column that pass through a triangle."""
-    low, high = -np.inf, np.inf  # of the tangent of the elevation
+    low, high = -np.inf, np.inf  # of rise / level
     for k in range(3):
-        level, upward = edges[k, 0] * cos + edges[k, 1] * sin, edges[k, 2]
+        level, upward = edges[k, 0] * ahead + edges[k, 1] * aside, edges[k, 2]
         if upward > 0:
             low = max(low, -level / upward)
         elif upward < 0:
@@ -155,9 +192,11 @@ def _rows_within(edges: NDArray[np.float64], cos: float, sin: float, grid: Grid)
             return 0, -1
     if low > high:
         return 0, -1
-    first = math.ceil((grid.top - math.atan(high)) / grid.step)
-    last = math.floor((grid.top - math.atan(low)) / grid.step)
-    return max(int(first), 0), min(int(last), len(grid.cos_elevation) - 1)
+    if grid.is_panorama:
+        low, high = math.atan(low), math.atan(high)
+    one, other = (low - grid.first_row) / grid.row_step, (high - grid.first_row) / grid.row_step
+    first, last = max(min(one, other), 0.0), min(max(one, other), len(grid.level) - 1.0)
+    return int(math.ceil(first)), int(math.floor(last))
 
 
 @compiled
@@ -165,28 +204,51 @@ def draw_facets(outlines: Outlines, grid: Grid, strip: Strip) -> None:
     """Draw triangles on a strip, before what lies behind them.
 
     Args:
-        outlines: the triangles, owned by geoms.
+        outlines: the triangles.
         grid: all beams.
         strip: some of its columns; changed in place.
     """
-    columns, end = len(grid.cos_azimuth), strip.first + len(strip.geoms)
+    columns, end = len(grid.ahead), strip.first + len(strip.surfaces)
     for t in range(len(outlines.windows)):
         for turn in (0, columns):  # a window that begins before the grid's end may go on at its start
             start = max(outlines.windows[t, 0] - turn, strip.first)
             for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
-                cos, sin = grid.cos_azimuth[column], grid.sin_azimuth[column]
-                first, last = _rows_within(outlines.edges[t], cos, sin, grid)
-                level = outlines.planes[t, 0] * cos + outlines.planes[t, 1] * sin
-                upward, distance, owner = outlines.planes[t, 2], outlines.distances[t], outlines.owners[t]
-                k = column - strip.first
-                inverse_range, cosine, geoms = strip.inverse_range[k], strip.cosine[k], strip.geoms[k]
+                ahead, aside = grid.ahead[column], grid.aside[column]
+                first, last = _rows_within(outlines.edges[t], ahead, aside, grid)
+                level = outlines.planes[t, 0] * ahead + outlines.planes[t, 1] * aside
+                upward = outlines.planes[t, 2]
+                inverse_range, surfaces = (
+                    strip.inverse_range[column - strip.first],
+                    strip.surfaces[column - strip.first],
+                )
                 for row in range(first, last + 1):
-                    value = level * grid.cos_elevation[row] + upward * grid.sin_elevation[row]
-                    near = np.float32(value)
+                    near = np.float32(level * grid.level[row] + upward * grid.rise[row])
                     nearer = near > inverse_range[row]
                     inverse_range[row] = near if nearer else inverse_range[row]
-                    cosine[row] = np.float32(value * distance) if nearer else cosine[row]
-                    geoms[row] = owner if nearer else geoms[row]
+                    surfaces[row] = t if nearer else surfaces[row]
+
+
+@compiled
+def slopes_of_facets(strip: Strip, outlines: Outlines, slopes: NDArray[np.float32], geoms: NDArray[np.int32]) -> None:
+    """Say what lies behind the beams that meet triangles.
+
+    Args:
+        strip: all drawn.
+        outlines: the triangles, owned by geoms.
+        slopes: (3, columns, R) to be set to the triangles' `Outlines.planes`, and to 0 elsewhere.
+        geoms: (columns, R) to be set to the geom ids, and to -1 elsewhere.
+    """
+    for k in range(len(strip.surfaces)):
+        for row in range(strip.surfaces.shape[1]):
+            t = strip.surfaces[k, row]
+            if 0 <= t < len(outlines.owners):
+                geoms[k, row] = outlines.owners[t]
+                for i in range(3):
+                    slopes[i, k, row] = outlines.planes[t, i]
+            else:
+                geoms[k, row] = -1
+                for i in range(3):
+                    slopes[i, k, row] = 0
 
 
 def spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.int32]:
@@ -200,19 +262,17 @@ def spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.in
 
 @compiled
 def _spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.int32]:
-    columns, count = len(grid.cos_azimuth), 0
+    columns, count = len(grid.ahead), 0
     for t in range(len(outlines.windows)):
         for turn in (0, columns):
-            wide = min(outlines.windows[t, 1] - turn + 1, end) - max(outlines.windows[t, 0] - turn, first)
-            count += max(wide, 0)
+            count += max(min(outlines.windows[t, 1] - turn + 1, end) - max(outlines.windows[t, 0] - turn, first), 0)
     found = np.empty((count, 4), np.int32)
     count = 0
     for t in range(len(outlines.windows)):
         for turn in (0, columns):
             start = max(outlines.windows[t, 0] - turn, first)
             for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
-                cos, sin = grid.cos_azimuth[column], grid.sin_azimuth[column]
-                top, bottom = _rows_within(outlines.edges[t], cos, sin, grid)
+                top, bottom = _rows_within(outlines.edges[t], grid.ahead[column], grid.aside[column], grid)
                 if top <= bottom:
                     found[count, 0], found[count, 1] = outlines.owners[t], column
                     found[count, 2], found[count, 3] = top, bottom

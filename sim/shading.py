@@ -1,6 +1,6 @@
-"""How a flash lights what a pinhole sees: per pixel, from depth and material alone.
+"""How a flash lights what a pinhole sees: per pixel, from surface and material alone.
 
-All arrays are pictures with the bottom row first. Vectors are in view axes: x right, y up, z forward.
+All arrays are pictures with the top row first. Vectors are in view axes: x forward, y up, z right.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.sight import Seen
+
 Image = NDArray[np.floating]
 """float32 throughout."""
 
 _SHADOW_BIAS = 3e-3
 """Depth by which something must be nearer to the flash to throw a shadow, relative."""
-_DOUBT = np.float32(0.1)
-"""Weight of the size of a step, beside its change, in the choice between two."""
-NEIGHBOURS = 2
-"""Rows on either side of a pixel that its light depends on."""
+_NO_SURFACE = np.float32(1e-9)
+"""Length of the normal where there is none [1/m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,21 +61,21 @@ class Light:
 
 
 def flash_light(
-    inverse_depth: Image, seen_by_flash: NDArray[np.bool_], flash: tuple[float, float], window: Window, gloss: Gloss
+    seen: Seen, seen_by_flash: NDArray[np.bool_], flash: tuple[float, float], window: Window, gloss: Gloss
 ) -> Light:
     """Light a picture by a point flash beside the lens.
 
     Inverse square, Lambert's cosine, Blinn-Phong lobe, hard shadow.
 
     Args:
-        inverse_depth: (H, W) 1/z at the pixel centres [1/m]; nearly 0 where there is nothing.
+        seen: (H, W) along beams (1, up, across), so that inverse ranges are inverse depths.
         seen_by_flash: (H, W) `seen_from_flash` of the same pixels.
         flash: its position right of and above the lens [m].
         window: of the picture.
         gloss: of the surfaces.
     """
-    to_right, upward, ahead = _gradient(inverse_depth, window)  # the normal, pointing away, by an unknown length
-    length = np.sqrt(to_right**2 + upward**2 + ahead**2)
+    inverse_depth, (ahead, upward, to_right) = seen.inverse_range, seen.slopes  # the normals point away from the lens
+    length = np.maximum(np.sqrt(to_right**2 + upward**2 + ahead**2), _NO_SURFACE)
     across, up = window.across, window.up
     away = np.sqrt(across**2 + up**2 + 1)  # length of the ray from the lens (across, up, 1)
     flash_x, flash_y = flash[0] * inverse_depth - across, flash[1] * inverse_depth - up
@@ -114,38 +114,6 @@ def seen_from_flash(
     column = np.arange(first[0], first[0] + width, dtype=np.float32)
     row = np.arange(first[1], first[1] + height, dtype=np.float32)[:, None]
     map_x = column - np.float32(window.focal_x * flash[0]) * inverse_depth
-    map_y = row - np.float32(window.focal_y * flash[1]) * inverse_depth
+    map_y = row + np.float32(window.focal_y * flash[1]) * inverse_depth
     nearest = np.asarray(cv2.remap(flash_inverse_depth, map_x, map_y, cv2.INTER_LINEAR))
     return nearest <= inverse_depth * np.float32(1 + _SHADOW_BIAS)
-
-
-def _gradient(inverse_depth: Image, window: Window) -> tuple[Image, Image, Image]:
-    """Normals away from the lens, each divided by the distance of its plane: three (H, W) components.
-
-    Over a plane 1/z is linear in the tangents (u, v): its slopes, and its value at u = v = 0, are these components.
-    """
-    to_right = slope_on_surface(inverse_depth, axis=1) * np.float32(window.focal_x)
-    upward = slope_on_surface(inverse_depth, axis=0) * np.float32(window.focal_y)
-    return to_right, upward, inverse_depth - window.across * to_right - window.up * upward
-
-
-def slope_on_surface(picture: Image, axis: int) -> Image:
-    """(H, W) change per pixel, of the steps before and after each pixel the one on the pixel's own surface.
-
-    That is the step that goes on unchanged to the pixel beyond; where neither does, the smaller one. A pixel's slope
-    depends on its `NEIGHBOURS` on either side.
-    """
-    steps = np.diff(picture, axis=axis)
-    change = np.abs(np.diff(steps, axis=axis))
-    after_doubt = np.abs(steps) * _DOUBT
-    before_doubt = after_doubt.copy()
-    _part(before_doubt, axis, 1, None)[...] += change
-    _part(after_doubt, axis, 0, -1)[...] += change
-    chosen = _part(after_doubt, axis, 1, None) < _part(before_doubt, axis, 0, -1)
-    before, after = _part(steps, axis, 0, -1), _part(steps, axis, 1, None)
-    inner = np.asarray(cv2.copyTo(after, chosen.view(np.uint8), before.copy()))
-    return np.concatenate([_part(steps, axis, 0, 1), inner, _part(steps, axis, -1, None)], axis)
-
-
-def _part(picture: Image, axis: int, start: int, stop: int | None) -> Image:
-    return picture[start:stop] if axis == 0 else picture[:, start:stop]

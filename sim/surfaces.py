@@ -1,8 +1,9 @@
-"""Everything in a world that a laser beam can meet: triangles and round bodies."""
+"""Everything in a world that light meets: triangles and round bodies."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
+from threading import Lock
 
 import mujoco
 import numpy as np
@@ -36,10 +37,11 @@ class Surfaces:
 
         Args:
             model: the compiled world; shapes are taken as they are now.
-            hidden_bodies: ids of bodies never met, such as the robot that carries the scanner.
+            hidden_bodies: ids of bodies never met, such as the robot that carries the sensors.
         """
         seen = np.flatnonzero(visible_geoms(model, hidden_bodies))
         is_round = np.isin(model.geom_type[seen], list(_ROUND))
+        self._is_box, self._half_sizes = model.geom_type == mujoco.mjtGeom.mjGEOM_BOX, model.geom_size.copy()
         self._round, flat = seen[is_round], seen[~is_round]
         is_plane = model.geom_type[flat] == mujoco.mjtGeom.mjGEOM_PLANE
         self._flat = _Parts([_flat_mesh(model, geom) for geom in flat], flat, np.where(is_plane, FRONT, BOTH))
@@ -55,30 +57,34 @@ class Surfaces:
         self._soft = _Soft(model) if model.nflex + model.nskin else None
 
     def around(
-        self, data: mujoco.MjData, world_from_scanner: NDArray[np.float64]
+        self, data: mujoco.MjData, world_from_view: NDArray[np.float64]
     ) -> tuple[Triangles, Triangles, RoundBodies]:
-        """Where the surfaces are, seen from a scanner.
+        """Where the surfaces are, seen from somewhere.
 
         Args:
             data: state of the world, after `mj_kinematics` or more.
-            world_from_scanner: (4, 4) pose of the scanner.
+            world_from_view: (4, 4) frame of the beams.
 
         Returns:
             What is flat; boxes round the round bodies, their far sides; the round bodies.
         """
-        turn, eye = world_from_scanner[:3, :3], world_from_scanner[:3, 3]
+        turn, eye = world_from_view[:3, :3], world_from_view[:3, 3]
         rotations = turn.T @ data.geom_xmat.reshape(-1, 3, 3)
         places = (data.geom_xpos - eye) @ turn
         flat = self._flat.placed(rotations, places)
+        flat = flat._replace(sides=np.where(self._outside(rotations, places)[flat.owners], FRONT, flat.sides))
         if self._soft is not None:
-            flat = self._soft.added_to(flat, data, world_from_scanner)
+            flat = self._soft.added_to(flat, data, world_from_view)
         rotations, places = rotations[self._round], places[self._round]
-        body_from_scanner = rotations.transpose(0, 2, 1) / self._radii[:, :, None]
-        origins = -np.einsum("bij,bj->bi", body_from_scanner, places)
-        bodies = RoundBodies(
-            *(self._kinds, self._half_lengths, body_from_scanner, origins, self._radii, self._round.astype(np.int32))
-        )
+        body_from_view = rotations.transpose(0, 2, 1) / self._radii[:, :, None]
+        origins = -np.einsum("bij,bj->bi", body_from_view, places)
+        bodies = RoundBodies(self._kinds, self._half_lengths, body_from_view, origins, self._round.astype(np.int32))
         return flat, self._boxes.placed(rotations, places), bodies
+
+    def _outside(self, rotations: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """(ngeom,) which geoms are boxes that the view is outside of: their far sides are hidden by the near ones."""
+        eye = -np.einsum("gji,gj->gi", rotations, places)
+        return self._is_box & (np.abs(eye) > self._half_sizes).any(axis=1)
 
 
 class _Parts:
@@ -128,25 +134,27 @@ class _Soft:
         self._model = model
         self._scene = mujoco.MjvScene(model, maxgeom=model.nflex + model.nskin)
         self._option = mujoco.MjvOption()
+        self._lock = Lock()
 
-    def added_to(self, flat: Triangles, data: mujoco.MjData, world_from_scanner: NDArray[np.float64]) -> Triangles:
+    def added_to(self, flat: Triangles, data: mujoco.MjData, world_from_view: NDArray[np.float64]) -> Triangles:
         """Triangles with those of the soft things added."""
         model, scene = self._model, self._scene
         categories = mujoco.mjtCatBit.mjCAT_ALL.value
-        mujoco.mjv_updateScene(model, data, self._option, None, mujoco.MjvCamera(), categories, scene)
-        faces = scene.flexface.reshape(-1, 3)
+        with self._lock:
+            mujoco.mjv_updateScene(model, data, self._option, None, mujoco.MjvCamera(), categories, scene)
+            vertices, skin_vertices = scene.flexface.reshape(-1, 3).copy(), scene.skinvert.reshape(-1, 3).copy()
         cloths = [
-            faces[3 * first : 3 * (first + used)]
+            vertices[3 * first : 3 * (first + used)]
             for first, used in zip(scene.flexfaceadr, scene.flexfaceused, strict=True)
         ]
         skins = [
-            scene.skinvert.reshape(-1, 3)[first : first + count][model.skin_face[face : face + number]].reshape(-1, 3)
+            skin_vertices[first : first + count][model.skin_face[face : face + number]].reshape(-1, 3)
             for first, count, face, number in zip(
                 *(model.skin_vertadr, model.skin_vertnum, model.skin_faceadr, model.skin_facenum), strict=True
             )
         ]
         points = np.concatenate([np.zeros((0, 3)), *cloths, *skins])
-        points = (points - world_from_scanner[:3, 3]) @ world_from_scanner[:3, :3]
+        points = (points - world_from_view[:3, 3]) @ world_from_view[:3, :3]
         corners = np.arange(len(points), dtype=np.int32).reshape(-1, 3) + np.int32(len(flat.vertices))
         return Triangles(
             np.concatenate([flat.vertices, points]),

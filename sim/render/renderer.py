@@ -63,6 +63,7 @@ class Renderer:
             SimError: no OpenGL on this machine, or more geoms than segments can be told apart.
         """
         self.model = model
+        self.hidden_bodies = hidden_bodies
         self.near, self.far = near, far
         self.inverse_depth_scale = (far - near) / (far * near)
         """1/z = raw * scale + offset, z along the optical axis [m]."""

@@ -7,7 +7,6 @@ import pytest
 
 from sim.camera import FLASH, Camera, CameraParameters
 from sim.render.materials import linear_from_srgb, materials_of
-from sim.shading import slope_on_surface
 
 SMALL = CameraParameters(width=178, height=268, shots=7, noise=False, ambient=0)
 MEDIUM = SMALL.model_copy(update={"width": 356, "height": 536})
@@ -153,15 +152,6 @@ def test_without_something_in_between_nothing_is_in_shadow(world, renderer_of):
     u, v = map(int, project(photo, np.array([2.0, 0.2, -1])))
     floor = photo.image[v : v + 40, u - 20 : u + 20, 0]
     assert floor.min() > 0.5 * floor.max()
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-def test_the_slope_of_a_surface_does_not_mix_with_that_of_the_next_one(axis):
-    # Down at 4 a pixel, up at 1 from pixel 9.6 on, then a cliff: every pixel has the slope of its own side.
-    line = np.concatenate([4 * (9.6 - np.arange(10.0)), np.arange(10, 20) - 9.6, 50 + np.arange(5.0)])
-    picture = np.tile(line, (6, 1)).astype(np.float32)
-    slope = slope_on_surface(picture, 1) if axis else slope_on_surface(picture.T, 0).T
-    assert np.allclose(slope, [-4] * 10 + [1] * 15, atol=1e-4)
 
 
 def test_ambient_light_fills_the_shadow(world, renderer_of):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mission.bench.speed import rivals
-from mission.bench.speed.floor import bare_renders
+from mission.bench.speed.floor import render_panorama
 from mission.bench.speed.timing import Timing, in_turns
 from mission.bench.speed.worlds import World
 from sim.beams import directions
@@ -55,7 +55,7 @@ def compare_casters(world: World, repeats: int) -> list[Caster]:
     slow: dict[str, Callable[[], object]] = {MULTI_RAY: rivals.multi_ray(world, beams @ turn.T)}
     if rivals.has_mujoco_lidar():
         slow[MUJOCO_LIDAR] = rivals.mujoco_lidar(world, elevations[few], azimuths[few])
-    fast: dict[str, Callable[[], object]] = {FLOOR: lambda: bare_renders(world, pattern), OURS: _scan(world)}
+    fast: dict[str, Callable[[], object]] = {FLOOR: lambda: render_panorama(world, pattern), OURS: _scan(world)}
     if rivals.has_open3d():
         rays = (directions(elevations, azimuths) @ turn.T).astype(np.float32)
         tried = {chunk: rivals.embree(world, rays, chunk) for chunk in rivals.CHUNKS}

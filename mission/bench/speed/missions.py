@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from mission.bench.speed.beams import PATTERN
-from mission.bench.speed.floor import bare_renders
+from mission.bench.speed.floor import render_panorama, render_photographs
 from mission.bench.speed.timing import Timing
 from mission.bench.speed.worlds import World, scene_world
 from mission.errors import MissionError
-from sim.camera import Camera
+from sim.photo import CameraParameters
 from sim.scanner import PATTERNS
 
 
@@ -82,8 +82,8 @@ def _bare_seconds(scene: str, summary: dict[str, Any]) -> float:
 
 def _render_once(world: World) -> float:
     start = perf_counter()
-    bare_renders(world, PATTERNS[PATTERN])
-    Camera(world.renderer).bare_renders(world.data, world.world_from_scanner)
+    render_panorama(world, PATTERNS[PATTERN])
+    render_photographs(world, CameraParameters())
     return perf_counter() - start
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from mission.bench.speed.floor import render_photographs
 from mission.bench.speed.timing import Timing, in_turns
 from mission.bench.speed.worlds import World
 from sim.camera import Camera
@@ -16,10 +17,10 @@ COLOURS, FLOOR, OURS = "bare colour renders", "bare colour, depth and flash rend
 def time_photographs(world: World, repeats: int) -> tuple[int, dict[str, Timing]]:
     """How many photographs a turn has, and the time of a turn: its renders alone, and all of it."""
     camera = Camera(world.renderer)
-    shots = camera.parameters.shots
+    parameters = camera.parameters
     contenders: dict[str, Callable[[], object]] = {
-        COLOURS: lambda: camera.bare_renders(world.data, world.world_from_scanner, colours_only=True),
-        FLOOR: lambda: camera.bare_renders(world.data, world.world_from_scanner),
+        COLOURS: lambda: render_photographs(world, parameters, colours_only=True),
+        FLOOR: lambda: render_photographs(world, parameters),
         OURS: lambda: camera.photograph(world.data, world.world_from_scanner, np.random.default_rng(0)),
     }
-    return shots, in_turns(contenders, repeats)
+    return parameters.shots, in_turns(contenders, repeats)
