@@ -58,7 +58,7 @@ def test_switched_off_it_gives_its_renderer_back(scene: Scene, opened: list[Rend
 def test_whatever_part_fails_the_renderer_is_closed(
     scene: Scene, opened: list[Renderer], monkeypatch: pytest.MonkeyPatch, part: str
 ) -> None:
-    def fail(*_: Any) -> None:
+    def fail(*_: Any, **__: Any) -> None:
         raise SimError(f"{part} is broken")
 
     monkeypatch.setattr(f"mission.mopad.{part}", fail)
