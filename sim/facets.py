@@ -195,7 +195,8 @@ def _rows_within(edges: NDArray[np.float64], ahead: float, aside: float, grid: G
     if grid.is_panorama:
         low, high = math.atan(low), math.atan(high)
     one, other = (low - grid.first_row) / grid.row_step, (high - grid.first_row) / grid.row_step
-    first, last = max(min(one, other), 0.0), min(max(one, other), len(grid.level) - 1.0)
+    rows = float(len(grid.level))
+    first, last = min(max(min(one, other), 0.0), rows), max(min(max(one, other), rows - 1), -1.0)
     return int(math.ceil(first)), int(math.floor(last))
 
 

@@ -62,3 +62,17 @@ def test_slopes_are_the_normal_and_lead_to_the_range(world, kind):
     assert np.allclose(np.linalg.norm(from_middle, axis=0), 0.5, atol=1e-5)
     normals = seen.slopes[:, ball] / np.linalg.norm(seen.slopes[:, ball], axis=0)
     assert np.allclose(normals, -from_middle / 0.5, atol=1e-4)
+
+
+def test_what_is_far_above_or_below_a_picture_is_not_in_it(world):
+    # A plane without end of 20 km behind a picture's upper edge, and one seen edge on by the middle row.
+    model, data = world(
+        '<geom type="plane" size="0 0 1" pos="0 0 1e-5" euler="180 0 0"/><geom type="plane" size="0 0 1"/>'
+    )
+    pose = np.eye(4)
+    pose[2, 3] = 1e-6
+    angles = np.linspace(0.5, -0.5, 21)
+    geoms = Sight(Surfaces(model), data, pose, picture(angles, angles)).seen(slice(0, 21)).geoms
+    assert (geoms[:, :10] == 0).all() and (geoms[:, 11:] == 1).all()
+    tall = picture(angles, angles + 1e9)
+    assert (Sight(Surfaces(model), data, pose, tall).seen(slice(0, 21)).geoms == 0).all()
