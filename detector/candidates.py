@@ -30,6 +30,14 @@ STRIP = (0.01, 0.06)
 """What surrounds a door is looked at from here to there outside its sides [m]."""
 OVERSHOOT = 0.15
 """How far beyond its corners the outline of a door must have ended [m]."""
+MAX_OVERSHOOT = 0.5
+"""A level line that is seen over less than this share of such a length ends."""
+PATTERN = 2
+"""Fewer level lines than this, one above the other, are no pattern."""
+GO_ON = 1 / 3
+"""Share of a pattern that may go on within a door that interrupts it: a handle lies in line with a joint."""
+IN_LINE_PX = 2
+"""Level lines on both sides that are this close are one: each wanders by a pixel."""
 
 
 class Strip(NamedTuple):
@@ -103,16 +111,16 @@ def door_boxes(
     return Boxes(vertical[chosen[:, 0]], vertical[chosen[:, 1]], tops[top.ravel()])
 
 
-def side_support(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]:
+def side_support(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray]:
     """Condition 2: share of the left, top, right and bottom sides on a discontinuity, (N, 4).
 
     Shares are of the visible length; what furniture hides can neither support nor refute. Where most of a side is
     hidden, the rest must be clear. The bottom is the floor.
 
     Returns:
-        The support, the same of the left and right foot, (N, 2), and of the left and right end of the top, (N, 2).
+        The support, and the same of the left and right foot, (N, 2).
     """
-    foot, corner = (max(1, round(length / scene.merged.pixel_size)) for length in (FOOT, CORNER))
+    foot = max(1, round(FOOT / scene.merged.pixel_size))
     top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
     lowest = np.full(len(boxes), scene.lowest_row)
     upright = _edges_and_view(scene.edges.upright, scene, (1, 3))
@@ -120,9 +128,25 @@ def side_support(boxes: Boxes, scene: Scene) -> tuple[NDArray, NDArray, NDArray]
     sides = [_shares(*upright, [top, x, lowest, x + 1]) for x in (left, right)]
     above = _shares(*level, [top, left, top + 1, right + 1])
     feet = [_shares(*upright, [lowest - foot, x, lowest, x + 1]) for x in (left, right)]
-    ends = [_shares(*level, [top, x, top + 1, x + corner + 1]) for x in (left, right - corner)]
     supports = [_support(*sides[0]), _support(*above), _support(*sides[1]), np.ones(len(boxes))]
-    return np.stack(supports, axis=1), _end_support(feet), _end_support(ends)
+    return np.stack(supports, axis=1), _end_support(feet)
+
+
+def corner_support(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
+    """(N, 2) share of the left and the right end of the top on a discontinuity; 1 where too little of it is visible.
+
+    Smoothed along, an edge has half of its change at its end. That will do there, if the edge is whole next to it.
+    """
+    corner, smoothed = (max(1, round(x / scene.merged.pixel_size)) for x in (CORNER, COLOUR_ALONG))
+    top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
+
+    def ends(edges: Mask, first: int, last: int) -> NDArray[np.float64]:
+        level = _edges_and_view(edges, scene, (3, 1))
+        spans = (left + first, left + last + 1), (right - last, right - first + 1)
+        return _end_support([_shares(*level, [top, a, top + 1, b]) for a, b in spans])
+
+    whole, half = (ends(edges, 0, corner) for edges in (scene.edges.level, scene.edges.level_ends))
+    return np.maximum(whole, np.minimum(half, ends(scene.edges.level, smoothed // 2, smoothed)))
 
 
 def _edges_and_view(edges: Mask, scene: Scene, across: tuple[int, int]) -> tuple[NDArray, NDArray]:
@@ -215,18 +239,51 @@ def overshoot(boxes: Boxes, scene: Scene) -> NDArray[np.float64]:
     The joints of tiles go on there, if faintly, and planks have none; the head of a door ends. At the end of the wall
     everything does.
     """
-    reach = round(OVERSHOOT / scene.merged.pixel_size)
-    top, left, right = (np.rint(x).astype(int) for x in (boxes.top, boxes.left, boxes.right))
-    level = scene.sums(cv2.dilate(scene.edges.faint_level.view(np.uint8), np.ones((3, 1), np.uint8)) > 0)
-    visible = scene.sums(scene.visible)
-    clear = 1 + round(COLOUR_ALONG / 2 / scene.merged.pixel_size)  # so far an edge is smoothed beyond its end
-    beside = [(left - clear - reach, left - clear), (right + clear, right + clear + reach)]
-    worst = np.zeros(len(boxes))
-    for first, last in beside:
-        first, last = (np.clip(x, 0, scene.visible.shape[1]) for x in (first, last))
-        span = np.stack([top, first, top + 1, last], axis=1)
-        seen = box_sums(visible, span)
-        worst = np.maximum(
-            worst, np.where(seen >= END_VISIBLE * reach, box_sums(level, span) / np.maximum(seen, 1), 1.0)
-        )
+    top, worst = np.rint(boxes.top).astype(int), np.zeros(len(boxes))
+    for sides, outwards in ((boxes.left, -1), (boxes.right, 1)):
+        columns, line = np.unique(np.rint(sides).astype(int), return_inverse=True)
+        beyond = np.nan_to_num(_level_shares(columns, outwards, scene), nan=1.0)
+        worst = np.maximum(worst, beyond[line, top])
     return worst
+
+
+def interrupts(boxes: Boxes, scene: Scene) -> NDArray[np.bool_]:
+    """(N,) whether a pattern of level lines goes on from the left of a rectangle to its right, but not within it.
+
+    The head of a door may lie in line with a joint of the tiles around it, but the joints below end at its sides, to
+    begin again in line beyond it. Joints of planks are staggered. A skirting does not count: it ends anywhere.
+    """
+    if len(boxes) == 0:
+        return np.zeros(0, bool)
+    sides = np.rint(np.stack([boxes.left, boxes.right], axis=1)).astype(int)
+    (left, right), pair = (x.T for x in np.unique(sides, axis=0, return_inverse=True))
+    outside, inside = ((_level_shares(left, way, scene), _level_shares(right, -way, scene)) for way in (-1, 1))
+    lines = np.isfinite(inside).all(axis=0) & np.all([_in_line(share) for share in outside], axis=0)
+    lines[:, max(0, scene.lowest_row - round(FOOT / scene.merged.pixel_size)) :] = False
+    begins = lines & ~np.pad(lines, ((0, 0), (1, 0)))[:, :-1]
+    going_on = begins & np.any([_in_line(share) for share in inside], axis=0)
+    count, crossing = (np.cumsum(mask[:, ::-1], axis=1)[:, ::-1] for mask in (begins, going_on))  # from a row down
+    interrupted = (count >= PATTERN) & (crossing < GO_ON * count)
+    below = np.rint(boxes.top).astype(int) + _blur(scene)
+    return np.asarray(interrupted[pair.ravel(), np.minimum(below, lines.shape[1] - 1)])
+
+
+def _in_line(share: NDArray[np.float64]) -> Mask:
+    """(N, H) rows in line with a level line, of which the shares (N, H) are seen."""
+    line = (share >= MAX_OVERSHOOT).astype(np.uint8)
+    return cv2.dilate(line, np.ones((1, IN_LINE_PX + 1), np.uint8)) > 0
+
+
+def _blur(scene: Scene) -> int:
+    """So far an edge is smoothed beyond its end [px]."""
+    return 1 + round(COLOUR_ALONG / 2 / scene.merged.pixel_size)
+
+
+def _level_shares(columns: NDArray[np.int64], way: int, scene: Scene) -> NDArray[np.float64]:
+    """(N, H) share of faint level edges in each row to the left (way -1) or right (1) of columns; NaN where unseen."""
+    level = scene.sums(cv2.dilate(scene.edges.faint_level.view(np.uint8), np.ones((3, 1), np.uint8)) > 0)
+    reach = round(OVERSHOOT / scene.merged.pixel_size)
+    ends = np.sort([columns + way * _blur(scene), columns + way * (_blur(scene) + reach)], axis=0)
+    first, last = np.clip(ends, 0, scene.visible.shape[1])
+    hits, seen = (np.diff(sums[:, last] - sums[:, first], axis=0).T for sums in (level, scene.sums(scene.visible)))
+    return np.where(seen >= END_VISIBLE * reach, hits / np.maximum(seen, 1), np.nan)

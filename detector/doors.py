@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 from detector.candidates import (
     CORNER_SUPPORT,
     FOOT_SUPPORT,
+    MAX_OVERSHOOT,
     OVERSHOOT,
     Boxes,
     Scene,
+    corner_support,
     door_boxes,
     inner_shares,
+    interrupts,
     overshoot,
     side_support,
     surroundings,
@@ -44,7 +47,6 @@ CLEAR_FOOT = 0.6
 """Likewise of each foot: a skirting or a threshold takes a hand's breadth of it."""
 MOSTLY_SEEN = 0.6
 """Share of a door of faint outline that shows at least: the shadows of a shelf are a faint outline round it, too."""
-MAX_OVERSHOOT = 0.5
 ENDS = 0.2
 """The head of a door of boards among boards is all there is to tell it from them: it must end, within this."""
 MAX_LINES = 50
@@ -84,8 +86,13 @@ def find_doors(
     looked_at = Scene(merged, seen, edges, wall, face, visible, hidden, floor_row, lowest, parameters.max_protrusion)
 
     def search(upright: Mask, level: Mask, faint: bool) -> tuple[tuple[Candidate, ...], Scene, tuple[NDArray, NDArray]]:
-        shown = edges.faint_level & ~hidden
-        found = replace(edges, upright=upright & ~hidden, level=level & ~hidden, faint_level=shown)
+        found = replace(
+            edges,
+            upright=upright & ~hidden,
+            level=level & ~hidden,
+            faint_level=edges.faint_level & ~hidden,
+            level_ends=(edges.level_ends if faint else level) & ~hidden,
+        )
         scene = replace(looked_at, edges=found)
         lines = (
             find_lines(
@@ -136,7 +143,8 @@ def judge(
     """
     if len(boxes) == 0:
         return ()
-    support, feet, corners = side_support(boxes, scene)
+    support, feet = side_support(boxes, scene)
+    corners = corner_support(boxes, scene)
     wall, visible, through = inner_shares(boxes, scene)
     around = surroundings(boxes, scene)
     in_wall = wall > parameters.alpha3
@@ -147,7 +155,7 @@ def judge(
     reasons = np.full(len(boxes), None, object)
     checks = (
         ("door frame occlusion", support.min(axis=1) < parameters.alpha2),
-        ("corners", corners.min(axis=1) < CORNER_SUPPORT),
+        ("corners", corners.min(axis=1) < (CLEAR_SUPPORT if faint else CORNER_SUPPORT)),
         ("location consistency", (in_wall | faint) & ~alone),
         ("panel occlusion", visible < least_visible),
         ("floor", feet.min(axis=1) < FOOT_SUPPORT),
@@ -194,7 +202,8 @@ def _stand_alone(
     closed &= boxes.top * scene.merged.pixel_size > OVERSHOOT  # a plank goes up to the ceiling
     beyond = np.ones(len(boxes))
     beyond[closed] = overshoot(boxes[closed], scene)
-    closed &= beyond < MAX_OVERSHOOT
+    going_on = np.flatnonzero(closed & (beyond >= MAX_OVERSHOOT))
+    closed[going_on] = interrupts(boxes[going_on], scene)
     for i in np.flatnonzero(closed)[np.argsort(-support[closed].sum(axis=1), kind="stable")][JUDGED:]:
         closed[i] = False
     for i in np.flatnonzero(closed & in_wall):

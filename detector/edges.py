@@ -59,6 +59,8 @@ class Edges:
     """Like `upright`, with colour that changes by no more than clearly above its noise."""
     faint_level: Mask
     """Like `level`, likewise."""
+    level_ends: Mask
+    """Like `faint_level` from half the change on: what smoothing along an edge leaves of it at its end."""
 
 
 def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) -> Edges:
@@ -77,14 +79,17 @@ def find_edges(merged: Orthoimage, seen: Image, parameters: DetectorParameters) 
     colour = gradient > threshold
     across = e >= g
     steps_across, steps_along = relief.edges & relief.across, relief.edges & ~relief.across
+    faint_upright, _ = _faint(e, merged.coloured, threshold)
+    faint_level, level_ends = _faint(g, merged.coloured, threshold)
     return Edges(
         colour=colour,
         depth=relief.edges,
         upright=(colour & across) | steps_across,
         level=(colour & ~across) | steps_along,
         sloping=relief.sloping,
-        faint_upright=_faint(e, merged.coloured, threshold) | steps_across,
-        faint_level=_faint(g, merged.coloured, threshold) | steps_along,
+        faint_upright=faint_upright | steps_across,
+        faint_level=faint_level | steps_along,
+        level_ends=level_ends | steps_along,
     )
 
 
@@ -137,15 +142,21 @@ def colour_threshold(gradient: NDArray[np.float32], coloured: Mask, parameters: 
     return _above_noise(min(otsu, parameters.colour_edge_cap), NOISE_FACTOR, values)
 
 
-def _faint(square: NDArray[np.float32], coloured: Mask, strong: float) -> Mask:
+def _faint(square: NDArray[np.float32], coloured: Mask, strong: float) -> tuple[Mask, Mask]:
     """(H, W) where the colour changes clearly above its noise in one direction: grain and boards have but one.
 
     Args:
         square: (H, W) squared rate of change in that direction.
         strong: Rate that is always an edge.
+
+    Returns:
+        Where it does, and where it changes by half as much.
     """
+    if not coloured.any():
+        return coloured, coloured
     rate = np.where(coloured, np.sqrt(square), np.float32(0))
-    return rate > min(strong, _above_noise(FAINT_LEAST, FAINT_FACTOR, rate[coloured])) if coloured.any() else coloured
+    least = min(strong, _above_noise(FAINT_LEAST, FAINT_FACTOR, rate[coloured]))
+    return rate > least, rate > least / 2
 
 
 def _above_noise(least: float, factor: float, values: NDArray[np.float32]) -> float:

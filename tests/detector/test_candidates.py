@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.candidates import Boxes, Scene, overshoot, side_support
+from detector.candidates import Boxes, Scene, corner_support, interrupts, overshoot, side_support
 from detector.doors import fainter_doors
 from detector.edges import Edges
 from detector.openings import Visibility
@@ -28,7 +28,7 @@ def scene(lines: tuple[tuple[slice, slice], ...] = (), colour: NDArray | None = 
     upright, level, nothing = (np.zeros(SHAPE, bool) for _ in range(3))
     for line in lines:
         (level if isinstance(line[0], int) else upright)[line] = True
-    edges = Edges(upright | level, nothing, upright, level, nothing, upright, level)
+    edges = Edges(upright | level, nothing, upright, level, nothing, upright, level, level)
     seen = np.full(SHAPE, Visibility.DATA, np.uint8)
     everything = np.ones(SHAPE, bool)
     return Scene(image, seen, edges, everything, everything, everything, ~everything, 260, 259, 0.06)
@@ -41,16 +41,68 @@ def test_a_top_that_ends_before_the_sides_is_that_of_a_pane() -> None:
     pane = Boxes(DOOR.left, DOOR.right, np.array([80.0]))
     lines = (LEFT, RIGHT, TOP, np.s_[80, 110:181])  # the pane is 10 cm from the sides
 
-    support, _, corners = side_support(pane, scene(lines))
+    support, _ = side_support(pane, scene(lines))
     np.testing.assert_allclose(support[0], [1, 71 / 91, 1, 1])
-    np.testing.assert_allclose(corners, [[0, 0]])
+    np.testing.assert_allclose(corner_support(pane, scene(lines)), [[0, 0]])
 
-    np.testing.assert_allclose(side_support(DOOR, scene(lines))[2], [[1, 1]])
+    np.testing.assert_allclose(corner_support(DOOR, scene(lines)), [[1, 1]])
+
+
+def test_half_the_change_will_do_at_the_end_of_a_top_that_is_whole_next_to_it() -> None:
+    fading = scene((LEFT, RIGHT, np.s_[60, 108:183]))  # 8 cm short of either side
+    half = fading.edges.level.copy()
+    half[60, 100:191] = True
+    np.testing.assert_allclose(corner_support(DOOR, fading), [[0, 0]])
+    np.testing.assert_allclose(corner_support(DOOR, _with_ends(fading, half)), [[1, 1]])
+
+    # a hinge in line with the top of a window that ends 20 cm before it
+    window = scene((LEFT, RIGHT, np.s_[60, 100:171]))
+    np.testing.assert_allclose(corner_support(DOOR, _with_ends(window, half)), [[1, 0]])
+
+
+def _with_ends(known: Scene, level_ends: NDArray[np.bool_]) -> Scene:
+    return replace(known, edges=replace(known.edges, level_ends=level_ends))
 
 
 def test_the_head_of_a_door_ends_at_its_corners_and_a_joint_of_tiles_goes_on() -> None:
     np.testing.assert_allclose(overshoot(DOOR, scene((LEFT, RIGHT, TOP))), [0.0])
     np.testing.assert_allclose(overshoot(DOOR, scene((LEFT, RIGHT, np.s_[60, :]))), [1.0])
+
+
+def joints(*rows: int, left: bool = True, right: bool = True, across: bool = False) -> tuple[tuple[int, slice], ...]:
+    """Level lines beside the door, or from one end of the wall to the other."""
+    if across:
+        return tuple(np.s_[row, :] for row in rows)
+    return tuple(
+        [np.s_[row, :100] for row in rows if left] + [np.s_[row, 191:] for row in rows if right],
+    )
+
+
+def test_a_door_interrupts_the_joints_of_tiles_and_tiles_do_not() -> None:
+    head = np.s_[60, :]  # in line with a joint
+    assert interrupts(DOOR, scene((LEFT, RIGHT, head, *joints(100, 140, 180))))
+    assert not interrupts(DOOR, scene((LEFT, RIGHT, head, *joints(100, 140, 180, across=True))))
+    # a handle lies in line with one of four joints
+    assert interrupts(DOOR, scene((LEFT, RIGHT, head, *joints(90, 120, 150, 180), np.s_[150, 105:130])))
+    # the lower two of three tiles go on: a board hangs on the upper one
+    assert not interrupts(DOOR, scene((LEFT, RIGHT, head, *joints(100), *joints(140, 180, across=True))))
+
+
+def test_lines_on_one_side_and_lines_that_do_not_meet_again_are_no_pattern() -> None:
+    left_only = joints(100, 140, 180, right=False)
+    assert not interrupts(DOOR, scene((LEFT, RIGHT, *left_only)))
+    # the joints of planks are staggered
+    assert not interrupts(DOOR, scene((LEFT, RIGHT, *left_only, *joints(120, 160, 200, left=False))))
+    # a rail and a skirting 10 cm high, whose top is in row 250
+    assert not interrupts(DOOR, scene((LEFT, RIGHT, *joints(150, 250))))
+
+
+def test_joints_that_furniture_hides_within_a_rectangle_are_not_seen_to_end() -> None:
+    tiles = scene((LEFT, RIGHT, *joints(100, 140, 180)))
+    visible = np.ones(SHAPE, bool)
+    visible[90:, 105:186] = False
+
+    assert not interrupts(DOOR, replace(tiles, visible=visible))
 
 
 def test_a_head_that_has_an_end_behind_furniture_is_not_seen_to_end() -> None:

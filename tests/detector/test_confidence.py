@@ -29,7 +29,7 @@ def scene(*, step: int, hidden: float = 0.0) -> Scene:
     wall[INSIDE] = False
     visible = np.ones(SHAPE, bool)
     visible[250 - round(200 * hidden) :, 100:190] = False
-    edges = Edges(*[none] * 7)
+    edges = Edges(*[none] * 8)
     seen = np.full(SHAPE, Visibility.DATA, np.uint8)
     return Scene(merged, seen, edges, wall, wall, visible, ~visible, floor_row=250, lowest_row=250, protrusion=0.06)
 

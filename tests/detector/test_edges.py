@@ -50,3 +50,16 @@ def test_the_head_of_a_door_of_boards_among_boards_is_a_faint_edge() -> None:
 
     assert edges.faint_level[99:101, 20:-20].any(axis=0).mean() > 0.95
     assert edges.faint_level[:95].mean() < 0.01  # and no edge where the boards go on
+
+
+def test_smoothing_shortens_a_faint_edge_but_not_its_ends() -> None:
+    # a step of 2 grey values in two channels changes by 1 a row in each: sqrt(2) / 255 = 0.0055; 0.004 is the least
+    image = plain_image((200, 300))
+    image.colour[100:, 100:200, :2] += 2
+    image.colour[20:60, 20:60] = 0  # a poster: no threshold of Otsu's is below the least
+
+    edges = find_edges(image, np.full((200, 300), Visibility.DATA, np.uint8), DetectorParameters(pixel_size=0.01))
+
+    # smoothed over 17 pixels, 13 of them must lie on the step, whose first column has 9; for half the change, 7 must
+    assert np.flatnonzero(edges.faint_level[100])[[0, -1]].tolist() == [104, 195]
+    assert np.flatnonzero(edges.level_ends[100])[[0, -1]].tolist() == [98, 201]

@@ -22,7 +22,10 @@ def hidden(depth: NDArray, *, sloping: Mask = NOTHING, seen: NDArray | None = No
     looked = np.full((SIDE, SIDE), Visibility.DATA, np.uint8) if seen is None else seen
     nothing = NOTHING.copy()
     return occluders(
-        image, looked, Edges(nothing, nothing, nothing, nothing, sloping, nothing, nothing), DetectorParameters()
+        image,
+        looked,
+        Edges(nothing, nothing, nothing, nothing, sloping, nothing, nothing, nothing),
+        DetectorParameters(),
     )
 
 
