@@ -66,9 +66,11 @@ class Outlines(NamedTuple):
     planes: NDArray[np.float64]
     """(T, 3) normals, of a length that makes the product with a beam its inverse range [1/m]."""
     windows: NDArray[np.int32]
-    """(T, 2) first column and last one, which may lie a turn beyond the grid's last; before the first if not seen."""
+    """(T, 2) first column and last one, which may lie a turn beyond the grid's last; before the first if unseen."""
     owners: NDArray[np.int32]
     """(T,) as `Triangles` has them."""
+    seen: NDArray[np.intp]
+    """(S,) which of them have a window."""
 
 
 class Strip(NamedTuple):
@@ -112,9 +114,10 @@ def outlined(triangles: Triangles, grid: Grid) -> Outlines:
         planes=np.empty((count, 3)),
         windows=np.empty((count, 2), np.int32),
         owners=triangles.owners,
+        seen=np.empty(0, np.intp),
     )
     _outline(triangles, np.arctan2(triangles.vertices[:, 1], triangles.vertices[:, 0]), grid, outlines)
-    return outlines
+    return outlines._replace(seen=np.flatnonzero(outlines.windows[:, 0] <= outlines.windows[:, 1]))
 
 
 @compiled
@@ -210,7 +213,7 @@ def draw_facets(outlines: Outlines, grid: Grid, strip: Strip) -> None:
         strip: some of its columns; changed in place.
     """
     columns, end = len(grid.ahead), strip.first + len(strip.surfaces)
-    for t in range(len(outlines.windows)):
+    for t in outlines.seen:
         for turn in (0, columns):  # a window that begins before the grid's end may go on at its start
             start = max(outlines.windows[t, 0] - turn, strip.first)
             for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
@@ -264,12 +267,12 @@ def spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.in
 @compiled
 def _spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.int32]:
     columns, count = len(grid.ahead), 0
-    for t in range(len(outlines.windows)):
+    for t in outlines.seen:
         for turn in (0, columns):
             count += max(min(outlines.windows[t, 1] - turn + 1, end) - max(outlines.windows[t, 0] - turn, first), 0)
     found = np.empty((count, 4), np.int32)
     count = 0
-    for t in range(len(outlines.windows)):
+    for t in outlines.seen:
         for turn in (0, columns):
             start = max(outlines.windows[t, 0] - turn, first)
             for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
