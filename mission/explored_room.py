@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mission.config import MissionConfig
-from mission.grid import Footprint, OccupancyGrid, grid_from_scans
+from mission.grid import Footprint, OccupancyGrid, ScannedFloor, occupancy_grid, scanned_floor
 from mission.localisation import LaserMap, laser_map
 from mission.planning import Plan, plan_next_scan
 from mission.registration import Registrar
@@ -23,6 +23,15 @@ from mission.structure import Structure, find_structure
 from mission.views import ColouredScan
 from mission.voxels import VoxelModel, label_voxels
 from sim.laser_scan import LaserScan
+
+
+@dataclass(frozen=True, eq=False)
+class RoomMaps:
+    """What one drives by in a room that is done: some hundred kilobytes, where its scans were megabytes each."""
+
+    floor: ScannedFloor
+    lasers: LaserMap
+    """At the height of the Hokuyos."""
 
 
 @dataclass
@@ -39,6 +48,9 @@ class ExploredRoom:
     coloured: list[ColouredScan] = field(default_factory=list)
     """The scans as the detector takes them; none without photographs, and none when the detector has seen them."""
     samples: list[PosedSample] = field(default_factory=list)
+    """The scans as registration, structure, voxels and plans take them; none when the room is linked to the others."""
+    maps: RoomMaps | None = None
+    """Of a room whose scans are gone."""
     rejected_in_world: list[NDArray[np.float64]] = field(default_factory=list)
     """(3,) where scans were taken that could not be registered [m]."""
     lasers: list[tuple[LaserScan, Pose]] = field(default_factory=list)
@@ -49,10 +61,23 @@ class ExploredRoom:
     """Where the robot has stood."""
 
     def close(self) -> None:
-        """Let go of what only a room that is scanned needs: what remains is to link it, and to drive through it."""
+        """Let go of what only a room that is scanned needs: what remains is to link it, and to drive through it.
+
+        The detector, which takes most memory of all, comes next.
+        """
         self.coloured.clear()
         self.threshold = None
         self.samples = [replace(sample, sample=sample.sample.without_image()) for sample in self.samples]
+
+    def settle(self, floor_height: float, laser_height: float) -> None:
+        """Keep maps in the place of the scans, once the room is linked to the others: what remains is to drive.
+
+        Args:
+            floor_height: World z of the floor [m].
+            laser_height: World z of the Hokuyos' plane [m].
+        """
+        self.maps = RoomMaps(self._scanned_floor(floor_height), self.laser_map(laser_height))
+        self.samples.clear()
 
     def structure(self) -> Structure:
         """Floor, ceiling and walls as far as they are scanned.
@@ -72,16 +97,16 @@ class ExploredRoom:
         return self.samples or [sample for sample in [self.threshold] if sample is not None]
 
     def laser_map(self, height: float) -> LaserMap:
-        """What the Hokuyos should see at their height over the floor [m]."""
+        """What the Hokuyos should see in their plane, at a world z [m]."""
+        if self.maps:
+            return self.maps.lasers
         normals = np.concatenate([sample.normals_in_world for sample in self.scanned])
         return laser_map(self.points, normals, height=height, parameters=self.config.navigation.localisation)
 
     def grid(self, floor_height: float) -> OccupancyGrid:
         """Where the robot can stand and drive."""
-        return grid_from_scans(
-            self.points,
-            self._scanners_in_world,
-            floor_height=floor_height,
+        return occupancy_grid(
+            self.maps.floor if self.maps else self._scanned_floor(floor_height),
             lasers=self.lasers,
             passing=self.passing,
             robot_poses=self.robot_poses,
@@ -117,6 +142,10 @@ class ExploredRoom:
             parameters=self.config.planning,
             seed=seed,
         )
+
+    def _scanned_floor(self, floor_height: float) -> ScannedFloor:
+        parameters = self.config.navigation.grid
+        return scanned_floor(self.points, self._scanners_in_world, floor_height=floor_height, parameters=parameters)
 
     @property
     def _scanners_in_world(self) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ such sectors stay unknown.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import cv2
@@ -61,11 +61,50 @@ class GridParameters(Parameters):
     )
 
 
-def grid_from_scans(
+@dataclass(frozen=True, eq=False)
+class ScannedFloor:
+    """What scans tell of the floor: an image, where their points are many."""
+
+    grid: OccupancyGrid
+    """Free where the floor was seen and nothing over it."""
+    seen: NDArray[np.bool_]
+    """(rows, columns) where the floor was seen, whatever is over it."""
+    scanners_in_world: NDArray[np.floating]
+    """(S, 3) origins of the beams [m]."""
+    floor_height: float
+    """World z of the floor [m]."""
+
+
+def scanned_floor(
     points_in_world: NDArray[np.floating],
     scanners_in_world: NDArray[np.floating],
     *,
     floor_height: float,
+    parameters: GridParameters | None = None,
+) -> ScannedFloor:
+    """Map the floor from scans.
+
+    Args:
+        points_in_world: (N, 3) points of all scans, thinned to 3 cm or denser [m].
+        scanners_in_world: (S, 3) origins of the beams [m], S >= 1.
+        floor_height: World z of the floor [m].
+    """
+    parameters = parameters or GridParameters()
+    points = _within_reach(np.asarray(points_in_world), scanners_in_world, floor_height, parameters)
+    grid = _empty_grid(points, scanners_in_world, parameters)
+    height = points[:, 2] - floor_height
+    floor = _count(grid, points[abs(height) < parameters.min_obstacle_height]) > 0
+    hits = _count(grid, points[height >= parameters.min_obstacle_height])
+    around = cv2.boxFilter(hits.astype(np.float32), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
+    occupied = (hits > 0) & (around > parameters.points_per_obstacle - 0.5)
+    floor, occupied = _closed(floor), _closed(occupied)
+    seen = np.where(occupied, Cell.OCCUPIED, np.where(floor, Cell.FREE, Cell.UNKNOWN)).astype(np.uint8)
+    return ScannedFloor(replace(grid, cells=seen), floor, scanners_in_world, floor_height)
+
+
+def occupancy_grid(
+    scanned: ScannedFloor,
+    *,
     footprint: Footprint,
     lasers: Sequence[tuple[LaserScan, NDArray[np.float64]]] = (),
     passing: Sequence[tuple[LaserScan, NDArray[np.float64]]] = (),
@@ -78,9 +117,7 @@ def grid_from_scans(
     Occupied wins over free, except under the robot itself: where it stood, nothing else can have been.
 
     Args:
-        points_in_world: (N, 3) points of all scans, thinned to 3 cm or denser [m].
-        scanners_in_world: (S, 3) origins of the beams [m], S >= 1.
-        floor_height: World z of the floor [m].
+        scanned: What the scans tell.
         footprint: What the robot covers where it has stood.
         lasers: Hokuyo scans, each with the (4, 4) world_from_base at which it was taken.
         passing: Hokuyo scans taken under way: they tell of what is new in the room, and nothing else.
@@ -88,22 +125,14 @@ def grid_from_scans(
         scanner: What took the scans: its field of view and minimum range leave a disc around it blind.
     """
     parameters, scanner = parameters or GridParameters(), scanner or ScannerParameters()
-    points = _within_reach(np.asarray(points_in_world), scanners_in_world, floor_height, parameters)
-    grid = _empty_grid(points, scanners_in_world, parameters)
-    height = points[:, 2] - floor_height
-    floor = _count(grid, points[abs(height) < parameters.min_obstacle_height]) > 0
-    hits = _count(grid, points[height >= parameters.min_obstacle_height])
-    around = cv2.boxFilter(hits.astype(np.float32), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
-    occupied = (hits > 0) & (around > parameters.points_per_obstacle - 0.5)
-    floor, occupied = _closed(floor), _closed(occupied)
-    seen = np.where(occupied, Cell.OCCUPIED, np.where(floor, Cell.FREE, Cell.UNKNOWN)).astype(np.uint8)
-    grid = replace(grid, cells=seen)
+    grid = scanned.grid
     for scan, world_from_base in lasers:
         grid = with_laser(grid, scan, world_from_base, parameters=parameters)
     grid = _with_news(grid, passing, parameters)
     cells = grid.cells.copy()
-    for origin in np.asarray(scanners_in_world, dtype=np.float64):
-        cells[_shadowed(grid, floor, origin, floor_height, scanner) & (cells == Cell.FREE)] = Cell.UNKNOWN
+    for origin in np.asarray(scanned.scanners_in_world, dtype=np.float64):
+        shadowed = _shadowed(grid, scanned.seen, origin, scanned.floor_height, scanner)
+        cells[shadowed & (cells == Cell.FREE)] = Cell.UNKNOWN
     for world_from_base in robot_poses:
         cells[_under(grid, footprint, world_from_base)] = Cell.FREE
     return replace(grid, cells=cells)

@@ -139,8 +139,8 @@ def common_scan_link(
         None if they have too little in common to hold all directions.
     """
     best: tuple[float, Link] | None = None
-    for scan in second[1]:
-        found = first[1].compare(scan.sample, first_from_second @ scan.world_from_scanner, _IN_COMMON)
+    guessed = [(scan.sample, first_from_second @ scan.world_from_scanner) for scan in second[1]]
+    for scan, found in zip(second[1], first[1].compare(guessed, _IN_COMMON), strict=True):
         if found.accepted and (best is None or found.fitness > best[0]):
             moved = found.world_from_scanner @ inverted(scan.world_from_scanner)
             best = found.fitness, scan_link(first[0], second[0], moved, scan.scanner_in_world, parameters)

@@ -192,3 +192,4 @@ class Mission:
         """
         structure, voxels = yield from self._surveyor.survey(room)
         yield from self._completion.complete(room, structure, voxels)
+        room.settle(structure.floor_height, structure.floor_height + self._mopad.laser_height)

@@ -86,6 +86,11 @@ class Mopad:
         return self.robot.true_world_from_base @ self.robot.base_from_scanner
 
     @property
+    def laser_height(self) -> float:
+        """Of the Hokuyos' plane over the floor that the robot stands on [m]."""
+        return float(self.robot.base_from_lasers[0][2, 3])
+
+    @property
     def true_openings(self) -> NDArray[np.float64]:
         """(D,) how far each door of the scene stands open [rad or m]."""
         return self._scene.true_openings()

@@ -168,7 +168,9 @@ class Redetection:
 
     def _complete(self, number: int) -> Iterator[Event]:
         if number in self._understood:
-            yield from self._completion.complete(self._rooms[number], *self._understood.pop(number))
+            room = self._rooms[number]
+            yield from self._completion.complete(room, *self._understood.pop(number))
+            room.samples.clear()  # nobody drives through it
 
 
 class _Ahead:

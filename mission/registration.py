@@ -6,7 +6,8 @@ Written with numpy and a k-d tree rather than Open3D, whose parallel sums on two
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
@@ -76,7 +77,7 @@ class Registrar:
 
     def __init__(self, parameters: RegistrationParameters | None = None) -> None:
         self.parameters = parameters or RegistrationParameters()
-        self._map = _Map(np.zeros((0, 3)), np.zeros((0, 3)))
+        self._map = _Map(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.float32))
 
     def register(self, sample: ScanSample, guess_world_from_scanner: Pose) -> Registration:
         """Find a scan's pose; an accepted scan joins the map, the first one as it is guessed."""
@@ -89,19 +90,20 @@ class Registrar:
         return registration
 
     def compare(
-        self, sample: ScanSample, guess_world_from_scanner: Pose, parameters: RegistrationParameters
-    ) -> Registration:
-        """Find a scan's pose by other limits, and leave the map as it is."""
-        return register(sample, guess_world_from_scanner, self._map, parameters)
+        self, scans: Iterable[tuple[ScanSample, Pose]], parameters: RegistrationParameters
+    ) -> list[Registration]:
+        """Find the poses of scans from guesses (world_from_scanner) by other limits, and leave the map as it is."""
+        world = replace(self._map)  # its tree goes with it
+        return [register(sample, guess, world, parameters) for sample, guess in scans]
 
 
 @dataclass(frozen=True, eq=False)
 class _Map:
-    """Points on flat surfaces, in the world, and a tree to find them."""
+    """Points on flat surfaces, in the world, and a tree to find them: what remains of the scans of earlier rooms."""
 
-    points: Points
+    points: NDArray[np.float32]
     """(N, 3) [m]."""
-    normals: Points
+    normals: NDArray[np.float32]
     """(N, 3) unit normals towards the scanner that saw them."""
 
     @cached_property
@@ -113,9 +115,10 @@ class _Map:
 
     def joined(self, scan: PosedSample, spacing: float) -> _Map:
         flat = np.isfinite(scan.normals_in_world[:, 0])
-        points = np.concatenate([self.points, scan.points_in_world[flat].astype(float)])
-        normals = np.concatenate([self.normals, scan.normals_in_world[flat].astype(float)])
-        kept = thinned(points, spacing, first=np.arange(len(points)) < len(self.points))  # older scans drift less
+        points = np.concatenate([self.points, scan.points_in_world[flat]])
+        normals = np.concatenate([self.normals, scan.normals_in_world[flat]])
+        older = np.arange(len(points)) < len(self.points)  # they drift less
+        kept = thinned(points.astype(float), spacing, first=older)
         return _Map(points[kept], normals[kept])
 
 
@@ -188,9 +191,10 @@ def _partners(points: Points, normals: Points, pose: Pose, world: _Map, reach: f
     distance, index = world.tree.query(here, distance_upper_bound=reach, workers=-1)
     met = np.flatnonzero(np.isfinite(distance))
     partner = index[met]
-    alike = _dot(facing[met], world.normals[partner]) > 0.85
-    met, partner = met[alike], partner[alike]
-    at, across = here[met], world.normals[partner]
+    across = world.normals[partner].astype(float)
+    alike = _dot(facing[met], across) > 0.85
+    met, partner, across = met[alike], partner[alike], across[alike]
+    at = here[met]
     return _Partners(at, across, _dot(at - world.points[partner], across))
 
 

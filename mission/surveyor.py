@@ -252,7 +252,7 @@ class Surveyor:
             mopad.meet_obstacles(driving=True)
             return mopad.measure_lasers()
 
-        laser_map = room.laser_map(floor_height + mopad.robot.base_from_lasers[0][2, 3])
+        laser_map = room.laser_map(floor_height + mopad.laser_height)
         leg = drive(
             mopad.robot,
             path,

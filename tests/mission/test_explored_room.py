@@ -22,7 +22,7 @@ from tests.mission.test_visibility import scan
 
 def test_every_stage_believes_in_the_scanner_that_scans(monkeypatch: pytest.MonkeyPatch) -> None:
     believed: dict[str, ScannerParameters] = {}
-    for stage in ("find_structure", "label_voxels", "grid_from_scans", "plan_next_scan"):
+    for stage in ("find_structure", "label_voxels", "occupancy_grid", "plan_next_scan"):
 
         def noted(*_: Any, stage: str = stage, scanner: ScannerParameters, **__: Any) -> Any:
             believed[stage] = scanner
@@ -55,3 +55,16 @@ def test_a_closed_room_keeps_what_one_finds_ones_way_by_and_no_image() -> None:
     assert room.coloured == [] and room.samples[0].sample.ranges.size == 0
     assert np.array_equal(room.points, sample.points_in_world)
     assert np.array_equal(room.samples[0].sample.points, sample.sample.points)
+
+
+def test_a_settled_room_has_the_maps_of_its_scans_and_not_the_scans() -> None:
+    place_of_scan = boxroom.pose(3, 2)
+    sample = place(sample_scan(boxroom.scan(boxroom.plain_room(), place_of_scan)), place_of_scan)
+    room = ExploredRoom(1, FOOTPRINT, MissionConfig(), Registrar(), samples=[sample], robot_poses=[place_of_scan])
+    grid, lasers = room.grid(0.0), room.laser_map(0.5)
+    room.settle(floor_height=0.0, laser_height=0.5)
+
+    assert room.samples == []
+    assert np.array_equal(room.grid(0.0).cells, grid.cells) and np.array_equal(room.grid(0.0).origin, grid.origin)
+    assert len(lasers.points) > 100 and np.array_equal(room.laser_map(0.5).points, lasers.points)
+    assert np.array_equal(room.laser_map(0.5).normals, lasers.normals)

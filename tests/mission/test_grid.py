@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from mission.grid import Cell, Footprint, OccupancyGrid, grid_from_scans, with_laser
+from mission.grid import Cell, Footprint, OccupancyGrid, occupancy_grid, scanned_floor, with_laser
 from sim.scan import ScannerParameters
 from tests.mission.driving_world import FOOTPRINT, Rectangle, free_room, laser_scan, pose
 
@@ -19,6 +19,12 @@ def sheet(x: tuple[float, float], y: tuple[float, float], z: float, *, step: flo
     """A level surface as points."""
     xs, ys = np.meshgrid(np.arange(*x, step) + step / 2, np.arange(*y, step) + step / 2)
     return np.column_stack([xs.ravel(), ys.ravel(), np.full(xs.size, z)])
+
+
+def grid_from_scans(
+    points: NDArray[np.float64], scanners: NDArray[np.float64], *, floor_height: float, **others: Any
+) -> OccupancyGrid:
+    return occupancy_grid(scanned_floor(points, scanners, floor_height=floor_height), **others)
 
 
 def state(grid: OccupancyGrid, x: float, y: float) -> Cell:
