@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -50,9 +51,11 @@ MAX_DETOURS = 3
 NO_ARRIVAL = "ways end early"
 """Reason to stop, beside those of the planner."""
 
-
 _COSTED = {Planned, DoorsEvaluated, MissionFinished}
 """Events that tell what the mission took so far."""
+
+Found = tuple[ScanSample, Registration]
+"""A scan, and where it was taken."""
 
 
 class Surveyor:
@@ -66,6 +69,7 @@ class Surveyor:
         self._seed = seed
         self._steps = 0
         self._scans = 0
+        self._beside = ThreadPoolExecutor(1)
         self.room = 1
         """Number of the room that events belong to."""
 
@@ -118,7 +122,7 @@ class Surveyor:
             Whether the scan found its place.
         """
         scan = yield from self._scan()
-        sample, found = yield from self._register(room, scan)
+        sample, found = yield from self._registered(room, self._register(room, scan))
         if found.accepted:
             into.threshold = place(sample, found.world_from_scanner)
             into.registrar.register(sample, found.world_from_scanner)
@@ -144,11 +148,12 @@ class Surveyor:
     def scan_here(self, room: ExploredRoom, *, photograph: bool) -> Iterator[Event]:
         """Scan, photograph, register and colour at the present pose: a scan of the room."""
         scan = yield from self._scan()
+        registering = self._register(room, scan)  # it needs the scan only, and the camera leaves a core idle
         if photograph:
             with self._stopwatch("photograph"):
                 photos = self._mopad.photograph()
             yield self.event(Photographed, scan_number=self._scans, photos=photos)
-        sample, found = yield from self._register(room, scan)
+        sample, found = yield from self._registered(room, registering)
         if not found.accepted:
             return
         self._look_around(room)
@@ -173,13 +178,21 @@ class Surveyor:
         while self._mopad.news:
             yield self.remark(self._mopad.news.pop(0))
 
-    def _register(self, room: ExploredRoom, scan: Scan) -> Generator[Event, None, tuple[ScanSample, Registration]]:
-        """Find where in a room a scan was taken, and believe it."""
-        mopad = self._mopad
-        guess = mopad.world_from_scanner
-        with self._stopwatch("register"):
+    def _register(self, room: ExploredRoom, scan: Scan) -> Future[Found]:
+        """Begin to find where in a room the robot stands."""
+        guess = self._mopad.world_from_scanner
+
+        def find() -> Found:
             sample = sample_scan(scan, self._config.samples)
-            found = room.registrar.register(sample, guess)
+            return sample, room.registrar.register(sample, guess)
+
+        return self._beside.submit(find)
+
+    def _registered(self, room: ExploredRoom, registering: Future[Found]) -> Generator[Event, None, Found]:
+        """Believe what a registration found."""
+        mopad, guess = self._mopad, self._mopad.world_from_scanner
+        with self._stopwatch("register"):
+            sample, found = registering.result()
         yield self.event(
             Registered,
             scan_number=self._scans,
