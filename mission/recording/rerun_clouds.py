@@ -95,10 +95,11 @@ class Clouds:
     def _new(self, view: View, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
         """Those of the chosen points whose cells show nothing yet, or nothing coloured and the point is."""
         keys, coloured = cell_keys(view.points_in_world[chosen], CELL), view.coloured[chosen]
-        known = np.where(coloured, np.isin(keys, self._shown_coloured), np.isin(keys, self._shown))
-        self._shown = np.union1d(self._shown, keys)
-        self._shown_coloured = np.union1d(self._shown_coloured, keys[coloured])
-        return chosen[~known]
+        shown = np.isin(keys, self._shown, assume_unique=True)
+        shown_coloured = np.isin(keys, self._shown_coloured, assume_unique=True)
+        self._shown = np.concatenate([self._shown, keys[~shown]])
+        self._shown_coloured = np.concatenate([self._shown_coloured, keys[coloured & ~shown_coloured]])
+        return chosen[~np.where(coloured, shown_coloured, shown)]
 
     def _draw(self, room: int) -> None:
         assert self._waiting is not None
@@ -114,6 +115,6 @@ class Clouds:
 
 def _reflectance(scan: Scan | None, count: int, chosen: NDArray[np.int64]) -> NDArray[np.int8] | None:
     """(M,) of the chosen ones of a view's points [dB]; None for a view that is not of all returns of the scan."""
-    if scan is None or np.count_nonzero(returned := np.isfinite(scan.ranges)) != count:
+    if scan is None or len(returned := np.flatnonzero(np.isfinite(scan.ranges))) != count:
         return None
-    return np.clip(np.rint(scan.reflectance[returned][chosen]), -128, 127).astype(np.int8)
+    return np.clip(np.rint(scan.reflectance.ravel()[returned[chosen]]), -128, 127).astype(np.int8)
