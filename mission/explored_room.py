@@ -16,13 +16,17 @@ from mission.config import MissionConfig
 from mission.grid import Footprint, OccupancyGrid, ScannedFloor, occupancy_grid, scanned_floor
 from mission.localisation import LaserMap, laser_map
 from mission.planning import Plan, plan_next_scan
-from mission.registration import Registrar
+from mission.registration import Registrar, Registration
 from mission.rigid import Pose
-from mission.samples import PosedSample
+from mission.samples import PosedSample, ScanSample, sample_scan
 from mission.structure import Structure, find_structure
 from mission.views import ColouredScan
 from mission.voxels import VoxelModel, label_voxels
 from sim.laser_scan import LaserScan
+from sim.scan import Scan
+
+Found = tuple[ScanSample, Registration]
+"""A scan, and where it was taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +63,11 @@ class ExploredRoom:
     """Those taken under way on legs that ended as planned."""
     robot_poses: list[Pose] = field(default_factory=list)
     """Where the robot has stood."""
+
+    def register(self, scan: Scan, guess_world_from_scanner: Pose) -> Found:
+        """Find where a scan was taken; the map grows by it if that is found."""
+        sample = sample_scan(scan, self.config.samples)
+        return sample, self.registrar.register(sample, guess_world_from_scanner)
 
     def close(self) -> None:
         """Let go of what only a room that is scanned needs: what remains is to link it, and to drive through it.

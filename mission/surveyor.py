@@ -29,12 +29,11 @@ from mission.events import (
     Scanned,
     Structured,
 )
-from mission.explored_room import ExploredRoom
+from mission.explored_room import ExploredRoom, Found
 from mission.localisation import localise
 from mission.memory import peak_memory
-from mission.registration import Registration
 from mission.rigid import Pose, inverted
-from mission.samples import ScanSample, place, sample_scan
+from mission.samples import place
 from mission.stopwatch import Stopwatch
 from mission.structure import Structure
 from mission.views import ColouredScan
@@ -53,9 +52,6 @@ NO_ARRIVAL = "ways end early"
 
 _COSTED = {Planned, DoorsEvaluated, MissionFinished}
 """Events that tell what the mission took so far."""
-
-Found = tuple[ScanSample, Registration]
-"""A scan, and where it was taken."""
 
 
 class Surveyor:
@@ -180,13 +176,7 @@ class Surveyor:
 
     def _register(self, room: ExploredRoom, scan: Scan) -> Future[Found]:
         """Begin to find where in a room the robot stands."""
-        guess = self._mopad.world_from_scanner
-
-        def find() -> Found:
-            sample = sample_scan(scan, self._config.samples)
-            return sample, room.registrar.register(sample, guess)
-
-        return self._beside.submit(find)
+        return self._beside.submit(room.register, scan, self._mopad.world_from_scanner)
 
     def _registered(self, room: ExploredRoom, registering: Future[Found]) -> Generator[Event, None, Found]:
         """Believe what a registration found."""
