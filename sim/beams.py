@@ -6,30 +6,19 @@ import math
 import os
 from collections.abc import Collection
 from concurrent.futures import ThreadPoolExecutor
-from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.compiled import compiled
+from sim.echo import Hits
 from sim.facets import panorama
 from sim.sight import Seen, Sight
 from sim.surfaces import Surfaces
 
 _STRIP = 64
 """Columns drawn at a time, so that they stay in the processor's cache."""
-
-
-class Hits(NamedTuple):
-    """What the beams of a panorama meet."""
-
-    inverse_range: NDArray[np.float32]
-    """(E, A) [1/m], 0 where there is nothing."""
-    cosine: NDArray[np.float32]
-    """(E, A) of the angle of incidence."""
-    geoms: NDArray[np.int32]
-    """(E, A) geom ids; -1 for nothing, and for a flex or skin."""
 
 
 class BeamCaster:

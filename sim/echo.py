@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.beams import Hits
 from sim.noise import normal_noise
 
 # ---- The noise of the VZ-400, all of it. One standard deviation each.
@@ -36,6 +36,17 @@ MAX_RANGE_REFLECTANCE = 0.9
 
 _BAND = 32
 """Rows of a scan worked on at a time, so that they stay in the processor's cache."""
+
+
+class Hits(NamedTuple):
+    """What the beams of a panorama meet."""
+
+    inverse_range: NDArray[np.float32]
+    """(E, A) [1/m], 0 where there is nothing."""
+    cosine: NDArray[np.float32]
+    """(E, A) of the angle of incidence."""
+    geoms: NDArray[np.int32]
+    """(E, A) geom ids; -1 for nothing, and for a flex or skin."""
 
 
 @dataclass(frozen=True)
