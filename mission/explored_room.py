@@ -25,15 +25,13 @@ from mission.voxels import VoxelModel, label_voxels
 from sim.laser_scan import LaserScan
 from sim.scan import Scan
 
-Found = tuple[ScanSample, Registration]
-"""A scan, and where it was taken."""
-
 
 @dataclass(frozen=True, eq=False)
 class RoomMaps:
     """What one drives by in a room that is done: some hundred kilobytes, where its scans were megabytes each."""
 
     floor: ScannedFloor
+    """What the scans told of it."""
     lasers: LaserMap
     """At the height of the Hokuyos."""
 
@@ -64,8 +62,8 @@ class ExploredRoom:
     robot_poses: list[Pose] = field(default_factory=list)
     """Where the robot has stood."""
 
-    def register(self, scan: Scan, guess_world_from_scanner: Pose) -> Found:
-        """Find where a scan was taken; the map grows by it if that is found."""
+    def register(self, scan: Scan, guess_world_from_scanner: Pose) -> tuple[ScanSample, Registration]:
+        """Thin a scan out and find where it was taken; the map grows by it if that is found."""
         sample = sample_scan(scan, self.config.samples)
         return sample, self.registrar.register(sample, guess_world_from_scanner)
 
@@ -102,18 +100,21 @@ class ExploredRoom:
 
     @property
     def scanned(self) -> Sequence[PosedSample]:
-        """What there is to find one's way by: the scans of the room, before the first the one from its threshold."""
+        """What there is to find one's way by: the scans of the room, before the first the one from its threshold.
+
+        None in a settled room, which has `maps`.
+        """
         return self.samples or [sample for sample in [self.threshold] if sample is not None]
 
     def laser_map(self, height: float) -> LaserMap:
-        """What the Hokuyos should see in their plane, at a world z [m]."""
+        """What the Hokuyos should see in their plane, at a world z [m]; of a settled room, the one that it keeps."""
         if self.maps:
             return self.maps.lasers
         normals = np.concatenate([sample.normals_in_world for sample in self.scanned])
         return laser_map(self.points, normals, height=height, parameters=self.config.navigation.localisation)
 
     def grid(self, floor_height: float) -> OccupancyGrid:
-        """Where the robot can stand and drive."""
+        """Where the robot can stand and drive; a settled room keeps to the floor that it was settled with [m]."""
         return occupancy_grid(
             self.maps.floor if self.maps else self._scanned_floor(floor_height),
             lasers=self.lasers,

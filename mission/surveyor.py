@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -29,9 +29,10 @@ from mission.events import (
     Scanned,
     Structured,
 )
-from mission.explored_room import ExploredRoom, Found
+from mission.explored_room import ExploredRoom
 from mission.localisation import localise
 from mission.memory import peak_memory
+from mission.registration import Registration
 from mission.rigid import Pose, inverted
 from mission.samples import place
 from mission.stopwatch import Stopwatch
@@ -65,7 +66,6 @@ class Surveyor:
         self._seed = seed
         self._steps = 0
         self._scans = 0
-        self._beside = ThreadPoolExecutor(1)
         self.room = 1
         """Number of the room that events belong to."""
 
@@ -118,7 +118,10 @@ class Surveyor:
             Whether the scan found its place.
         """
         scan = yield from self._scan()
-        sample, found = yield from self._registered(room, self._register(room, scan))
+        guess = self._mopad.world_from_scanner
+        with self._stopwatch("register"):
+            sample, found = room.register(scan, guess)
+        yield from self._registered(room, guess, found)
         if found.accepted:
             into.threshold = place(sample, found.world_from_scanner)
             into.registrar.register(sample, found.world_from_scanner)
@@ -144,12 +147,16 @@ class Surveyor:
     def scan_here(self, room: ExploredRoom, *, photograph: bool) -> Iterator[Event]:
         """Scan, photograph, register and colour at the present pose: a scan of the room."""
         scan = yield from self._scan()
-        registering = self._register(room, scan)  # it needs the scan only, and the camera leaves a core idle
-        if photograph:
-            with self._stopwatch("photograph"):
-                photos = self._mopad.photograph()
-            yield self.event(Photographed, scan_number=self._scans, photos=photos)
-        sample, found = yield from self._registered(room, registering)
+        with ThreadPoolExecutor(1) as beside:  # a scan is registered while the camera turns: it needs nothing else
+            guess = self._mopad.world_from_scanner
+            registering = beside.submit(room.register, scan, guess)
+            if photograph:
+                with self._stopwatch("photograph"):
+                    photos = self._mopad.photograph()
+                yield self.event(Photographed, scan_number=self._scans, photos=photos)
+            with self._stopwatch("register"):  # what is left of it
+                sample, found = registering.result()
+        yield from self._registered(room, guess, found)
         if not found.accepted:
             return
         self._look_around(room)
@@ -174,15 +181,9 @@ class Surveyor:
         while self._mopad.news:
             yield self.remark(self._mopad.news.pop(0))
 
-    def _register(self, room: ExploredRoom, scan: Scan) -> Future[Found]:
-        """Begin to find where in a room the robot stands."""
-        return self._beside.submit(room.register, scan, self._mopad.world_from_scanner)
-
-    def _registered(self, room: ExploredRoom, registering: Future[Found]) -> Generator[Event, None, Found]:
+    def _registered(self, room: ExploredRoom, guess: Pose, found: Registration) -> Iterator[Event]:
         """Believe what a registration found."""
-        mopad, guess = self._mopad, self._mopad.world_from_scanner
-        with self._stopwatch("register"):
-            sample, found = registering.result()
+        mopad = self._mopad
         yield self.event(
             Registered,
             scan_number=self._scans,
@@ -199,7 +200,6 @@ class Surveyor:
         else:
             room.rejected_in_world.append(guess[:3, 3])
             yield self.remark(f"scan {self._scans} is left out: {found.reason}")
-        return sample, found
 
     def understand(self, room: ExploredRoom) -> Generator[Event, None, tuple[Structure, VoxelModel]]:
         """Floor, ceiling, walls and voxels of the room as far as it is scanned."""

@@ -98,8 +98,8 @@ class Camera:
         """Light a shot; in any thread, as no two shots share anything."""
         world_from_flash = world_from_camera.copy()
         world_from_flash[:3, 3] += world_from_camera[:3, :3] @ [FLASH[0], -FLASH[1], 0]  # OpenCV's y is down
-        from_flash = self._sight(data, world_from_flash, self._margin)
-        flash_inverse_depth = from_flash.inverse_ranges(slice(0, self.parameters.height + 2 * self._margin[1]))
+        rows = slice(0, self.parameters.height + 2 * self._margin[1])
+        flash_inverse_depth = self._sight(data, world_from_flash, self._margin).inverse_ranges(rows)
         lens = self._sight(data, world_from_camera)
         materials, ambient = self._materials, np.float32(self.parameters.ambient / AMBIENT_DISTANCE**2)
         light, gloss = np.empty((2, *albedo.shape[:2]), np.float32)

@@ -59,18 +59,16 @@ class Grid(NamedTuple):
 
 
 class Outlines(NamedTuple):
-    """Triangles made ready to be drawn."""
+    """The triangles in sight, ready to be drawn."""
 
     edges: NDArray[np.float64]
     """(T, 3, 3) normals of the planes through the origin and each edge, pointing to the triangle's side."""
     planes: NDArray[np.float64]
     """(T, 3) normals, of a length that makes the product with a beam its inverse range [1/m]."""
     windows: NDArray[np.int32]
-    """(T, 2) first column and last one, which may lie a turn beyond the grid's last; before the first if unseen."""
+    """(T, 2) first column and last one, which may lie a turn beyond the grid's last."""
     owners: NDArray[np.int32]
     """(T,) as `Triangles` has them."""
-    seen: NDArray[np.intp]
-    """(S,) which of them have a window."""
 
 
 class Strip(NamedTuple):
@@ -103,44 +101,58 @@ def picture(asides: NDArray[np.float64], rises: NDArray[np.float64]) -> Grid:
 
 
 def _step(values: NDArray[np.float64]) -> float:
+    assert len(values) > 1, "one row or column has no step"
     return float(values[-1] - values[0]) / (len(values) - 1)
 
 
 def outlined(triangles: Triangles, grid: Grid) -> Outlines:
-    """Make triangles ready to be drawn."""
-    count = len(triangles.corners)
-    outlines = Outlines(
-        edges=np.empty((count, 3, 3)),
-        planes=np.empty((count, 3)),
-        windows=np.empty((count, 2), np.int32),
-        owners=triangles.owners,
-        seen=np.empty(0, np.intp),
-    )
-    _outline(triangles, np.arctan2(triangles.vertices[:, 1], triangles.vertices[:, 0]), grid, outlines)
-    return outlines._replace(seen=np.flatnonzero(outlines.windows[:, 0] <= outlines.windows[:, 1]))
+    """Make triangles ready to be drawn, those that beams of the grid may meet."""
+    azimuths = np.arctan2(triangles.vertices[:, 1], triangles.vertices[:, 0])
+    windows = np.empty((len(triangles.corners), 2), np.int32)
+    _find_windows(triangles, azimuths, grid, windows)
+    seen = np.flatnonzero(windows[:, 0] <= windows[:, 1])
+    outlines = Outlines(np.empty((len(seen), 3, 3)), np.empty((len(seen), 3)), windows[seen], triangles.owners[seen])
+    _outline(triangles.vertices, triangles.corners[seen], outlines.edges, outlines.planes)
+    return outlines
 
 
 @compiled
-def _outline(triangles: Triangles, azimuths: NDArray[np.float64], grid: Grid, outlines: Outlines) -> None:
+def _find_windows(triangles: Triangles, azimuths: NDArray[np.float64], grid: Grid, windows: NDArray[np.int32]) -> None:
+    """Set (T, 2) first and last columns; the last one lies before the first where a triangle cannot be met."""
     for t in range(len(triangles.corners)):
         a, b, c = triangles.corners[t, 0], triangles.corners[t, 1], triangles.corners[t, 2]
         first, last = _window(azimuths[a], azimuths[b], azimuths[c], grid)
-        outlines.windows[t, 0], outlines.windows[t, 1] = first, last
-        if first > last:
-            continue
-        p, q, r = triangles.vertices[a], triangles.vertices[b], triangles.vertices[c]
-        x, y, z = _cross((q[0] - p[0], q[1] - p[1], q[2] - p[2]), (r[0] - p[0], r[1] - p[1], r[2] - p[2]))
-        depth = x * p[0] + y * p[1] + z * p[2]  # above 0 where the origin is behind the triangle
         side = triangles.sides[t]
-        edge_on = abs(depth) <= _EDGE_ON * math.sqrt(x * x + y * y + z * z)
-        if edge_on or (side == FRONT and depth > 0) or (side == BACK and depth < 0):
-            outlines.windows[t, 1] = first - 1
-            continue
-        outlines.planes[t, 0], outlines.planes[t, 1], outlines.planes[t, 2] = x / depth, y / depth, z / depth
+        depth, length = _facing(triangles.vertices[a], triangles.vertices[b], triangles.vertices[c])[:2]
+        if abs(depth) <= _EDGE_ON * length or (side == FRONT and depth > 0) or (side == BACK and depth < 0):
+            last = first - 1
+        windows[t, 0], windows[t, 1] = first, last
+
+
+@compiled
+def _outline(
+    vertices: NDArray[np.float64],
+    corners: NDArray[np.int32],
+    edges: NDArray[np.float64],
+    planes: NDArray[np.float64],
+) -> None:
+    for t in range(len(corners)):
+        p, q, r = vertices[corners[t, 0]], vertices[corners[t, 1]], vertices[corners[t, 2]]
+        depth, _, x, y, z = _facing(p, q, r)
+        planes[t, 0], planes[t, 1], planes[t, 2] = x / depth, y / depth, z / depth
         sign = 1.0 if depth > 0 else -1.0
         for k, (start, end) in enumerate(((p, q), (q, r), (r, p))):
             x, y, z = _cross((start[0], start[1], start[2]), (end[0], end[1], end[2]))
-            outlines.edges[t, k, 0], outlines.edges[t, k, 1], outlines.edges[t, k, 2] = sign * x, sign * y, sign * z
+            edges[t, k, 0], edges[t, k, 1], edges[t, k, 2] = sign * x, sign * y, sign * z
+
+
+@compiled
+def _facing(
+    p: NDArray[np.float64], q: NDArray[np.float64], r: NDArray[np.float64]
+) -> tuple[float, float, float, float, float]:
+    """The normal of a triangle, before it its length and its product with a corner: above 0 seen from behind."""
+    x, y, z = _cross((q[0] - p[0], q[1] - p[1], q[2] - p[2]), (r[0] - p[0], r[1] - p[1], r[2] - p[2]))
+    return x * p[0] + y * p[1] + z * p[2], math.sqrt(x * x + y * y + z * z), x, y, z
 
 
 @compiled
@@ -193,7 +205,7 @@ def _rows_within(edges: NDArray[np.float64], ahead: float, aside: float, grid: G
             high = min(high, -level / upward)
         elif level < 0:
             return 0, -1
-    if low > high:
+    if not low <= high:
         return 0, -1
     if grid.is_panorama:
         low, high = math.atan(low), math.atan(high)
@@ -213,7 +225,7 @@ def draw_facets(outlines: Outlines, grid: Grid, strip: Strip) -> None:
         strip: some of its columns; changed in place.
     """
     columns, end = len(grid.ahead), strip.first + len(strip.surfaces)
-    for t in outlines.seen:
+    for t in range(len(outlines.windows)):
         for turn in (0, columns):  # a window that begins before the grid's end may go on at its start
             start = max(outlines.windows[t, 0] - turn, strip.first)
             for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
@@ -267,12 +279,12 @@ def spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.in
 @compiled
 def _spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.int32]:
     columns, count = len(grid.ahead), 0
-    for t in outlines.seen:
+    for t in range(len(outlines.windows)):
         for turn in (0, columns):
             count += max(min(outlines.windows[t, 1] - turn + 1, end) - max(outlines.windows[t, 0] - turn, first), 0)
     found = np.empty((count, 4), np.int32)
     count = 0
-    for t in outlines.seen:
+    for t in range(len(outlines.windows)):
         for turn in (0, columns):
             start = max(outlines.windows[t, 0] - turn, first)
             for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):

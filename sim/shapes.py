@@ -1,4 +1,4 @@
-"""Triangles of geoms, for measuring doors and drawing the robot."""
+"""Triangles of geoms, for sensors, for measuring doors and for drawing the robot."""
 
 from __future__ import annotations
 

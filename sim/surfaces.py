@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sim.compiled import compiled
 from sim.facets import BACK, BOTH, FRONT, Triangles
-from sim.render.visibility import visible_geoms
+from sim.render.visibility import GLASS_ALPHA, VISUAL_GROUPS, visible_geoms
 from sim.round_bodies import BALL, PILL, ROD, RoundBodies
 from sim.shapes import box, triangulate
 
@@ -19,7 +19,7 @@ Mesh = tuple[NDArray[np.generic], NDArray[np.generic]]
 """Vertices (V, 3) [m] and triangles (T, 3) of them, anticlockwise seen from outside."""
 
 ENDLESS = 1e4
-"""Half of the side of an endless plane [m]; from eye level its end is 0.01 deg below the horizon."""
+"""Half of the side of an endless plane [m], which goes where the eye goes: its end is 0.01 deg below the horizon."""
 
 _ROUND = {
     mujoco.mjtGeom.mjGEOM_SPHERE.value: BALL,
@@ -48,6 +48,8 @@ class Surfaces:
         self._kinds = np.array([_ROUND[kind] for kind in model.geom_type[self._round]], np.int8)
         size, is_ball = model.geom_size[self._round], self._kinds == BALL
         is_ellipsoid = model.geom_type[self._round] == mujoco.mjtGeom.mjGEOM_ELLIPSOID
+        endless = is_plane[:, None] & (model.geom_size[flat, :2] <= 0)
+        self._endless, self._is_endless = flat[endless.any(axis=1)], endless[endless.any(axis=1)]
         self._radii = np.where(is_ellipsoid[:, None], size, size[:, :1])
         lengths = np.where(is_ball, 0, size[:, 1])
         self._half_lengths = lengths / self._radii[:, 2]
@@ -71,6 +73,7 @@ class Surfaces:
         turn, eye = world_from_view[:3, :3], world_from_view[:3, 3]
         rotations = turn.T @ data.geom_xmat.reshape(-1, 3, 3)
         places = (data.geom_xpos - eye) @ turn
+        places[self._endless] = _under_eye(rotations[self._endless], places[self._endless], self._is_endless)
         flat = self._flat.placed(rotations, places)
         flat = flat._replace(sides=np.where(self._outside(rotations, places)[flat.owners], FRONT, flat.sides))
         if self._soft is not None:
@@ -128,12 +131,16 @@ def _placed(
 
 
 class _Soft:
-    """Flexes and skins, as MuJoCo draws them."""
+    """Flexes of two and three dimensions and skins, as MuJoCo draws them."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
         self._scene = mujoco.MjvScene(model, maxgeom=model.nflex + model.nskin)
         self._option = mujoco.MjvOption()
+        self._option.geomgroup[:] = self._option.sitegroup[:] = self._option.jointgroup[:] = 0
+        self._option.tendongroup[:] = self._option.actuatorgroup[:] = 0
+        self._flexes = (model.flex_group < VISUAL_GROUPS) & (_alpha(model, "flex") >= GLASS_ALPHA)
+        self._skins = (model.skin_group < VISUAL_GROUPS) & (_alpha(model, "skin") >= GLASS_ALPHA)
         self._lock = Lock()
 
     def added_to(self, flat: Triangles, data: mujoco.MjData, world_from_view: NDArray[np.float64]) -> Triangles:
@@ -145,13 +152,16 @@ class _Soft:
             vertices, skin_vertices = scene.flexface.reshape(-1, 3).copy(), scene.skinvert.reshape(-1, 3).copy()
         cloths = [
             vertices[3 * first : 3 * (first + used)]
-            for first, used in zip(scene.flexfaceadr, scene.flexfaceused, strict=True)
+            for first, used, shown in zip(scene.flexfaceadr, scene.flexfaceused, self._flexes, strict=True)
+            if shown
         ]
         skins = [
             skin_vertices[first : first + count][model.skin_face[face : face + number]].reshape(-1, 3)
-            for first, count, face, number in zip(
-                *(model.skin_vertadr, model.skin_vertnum, model.skin_faceadr, model.skin_facenum), strict=True
+            for first, count, face, number, shown in zip(
+                *(model.skin_vertadr, model.skin_vertnum, model.skin_faceadr, model.skin_facenum, self._skins),
+                strict=True,
             )
+            if shown
         ]
         points = np.concatenate([np.zeros((0, 3)), *cloths, *skins])
         points = (points - world_from_view[:3, 3]) @ world_from_view[:3, :3]
@@ -164,14 +174,28 @@ class _Soft:
         )
 
 
+def _alpha(model: mujoco.MjModel, kind: str) -> NDArray[np.float32]:
+    """Opacity of each flex or skin: its material's, if it has one."""
+    own = getattr(model, f"{kind}_rgba")[:, 3]
+    material = getattr(model, f"{kind}_matid")[: len(own)]  # MuJoCo 4.0 shows more of flexes than there are
+    return np.where(material >= 0, np.append(model.mat_rgba[:, 3], 1)[material], own)
+
+
+def _under_eye(
+    rotations: NDArray[np.float64], places: NDArray[np.float64], is_endless: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """(P, 3) planes moved along those of their axes (P, 2) that have no end, until they lie under or over the eye."""
+    along = -np.einsum("pji,pj->pi", rotations, places)[:, :2] * is_endless
+    return places + np.einsum("pji,pi->pj", rotations[:, :, :2], along)
+
+
 def _flat_mesh(model: mujoco.MjModel, geom: int) -> Mesh:
     """The triangles of a geom without round sides."""
     match mujoco.mjtGeom(int(model.geom_type[geom])):
         case mujoco.mjtGeom.mjGEOM_PLANE:
             half = np.where(model.geom_size[geom, :2] > 0, model.geom_size[geom, :2], ENDLESS)
-            return np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]) * [*half, 0], np.array(
-                [(0, 1, 2), (0, 2, 3)]
-            )
+            corners = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]) * [*half, 0]
+            return corners, np.array([(0, 1, 2), (0, 2, 3)])
         case mujoco.mjtGeom.mjGEOM_HFIELD:
             return _height_field(model, int(model.geom_dataid[geom]))
     return triangulate(model, geom)

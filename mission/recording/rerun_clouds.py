@@ -95,7 +95,7 @@ class Clouds:
     def _new(self, view: View, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
         """Those of the chosen points whose cells show nothing yet, or nothing coloured and the point is."""
         keys, coloured = cell_keys(view.points_in_world[chosen], CELL), view.coloured[chosen]
-        shown = np.isin(keys, self._shown, assume_unique=True)
+        shown = np.isin(keys, self._shown, assume_unique=True)  # `thin` chose one point a cell
         shown_coloured = np.isin(keys, self._shown_coloured, assume_unique=True)
         self._shown = np.concatenate([self._shown, keys[~shown]])
         self._shown_coloured = np.concatenate([self._shown_coloured, keys[coloured & ~shown_coloured]])

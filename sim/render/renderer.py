@@ -18,8 +18,8 @@ from sim.render.view import View
 from sim.render.visibility import SHOWN, effective_rgba, showing, visible_geoms
 
 _QUALITY = {"numslices": 48, "numstacks": 16, "numquads": 1, "offsamples": 0, "shadowsize": 0}
-"""Tessellation: 48 sides leave 0.2 % of the radius between a drawn cylinder and a true one. No multisampling: depth
-and segments must not be blended."""
+"""Tessellation: 48 sides leave 0.2 % of the radius between a drawn cylinder and a true one: a pixel at its rim has
+the colour of what lies behind. No multisampling: depth and segments must not be blended."""
 _MAX_SEGMENTS = 2**16 - 2
 
 
@@ -40,7 +40,8 @@ class Renderer:
     """Owns an offscreen OpenGL context with one model in it. Use as a context manager, or close it.
 
     Sees what light meets (`visible_geoms`); a plane is seen from its front only, like MuJoCo's rays do. Meshes are
-    two-sided. The model is left as it was found.
+    two-sided. The model is left as it was found. Photographs take their colours from here; depth is a yardstick for
+    tests and benchmarks.
     """
 
     def __init__(
@@ -60,10 +61,11 @@ class Renderer:
             far: distance of the far clipping plane, and half the size of an infinite plane [m].
 
         Raises:
-            SimError: no OpenGL on this machine, or more geoms than segments can be told apart.
+            SimError: no OpenGL on this machine.
         """
         self.model = model
         self.hidden_bodies = hidden_bodies
+        """Ids of bodies never seen."""
         self.near, self.far = near, far
         self.inverse_depth_scale = (far - near) / (far * near)
         """1/z = raw * scale + offset, z along the optical axis [m]."""
@@ -71,8 +73,6 @@ class Renderer:
         self._visible = visible_geoms(model, hidden_bodies)
         self._is_plane = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
         self._needs_flattening = _needs_flattening(model)
-        if model.ngeom + model.nflex + model.nskin > _MAX_SEGMENTS:
-            raise SimError(f"the scene has {model.ngeom} geoms; the sensors tell at most {_MAX_SEGMENTS} apart")
         with ExitStack() as stack, self._own_visual_settings():
             self._context = make_context()
             stack.callback(self._context.free)
@@ -92,7 +92,13 @@ class Renderer:
         Args:
             data: state of the world, after `mj_kinematics` or more.
             view: the picture wanted.
+
+        Raises:
+            SimError: the scene has more geoms than segments can be told apart.
         """
+        count = self.model.ngeom + self.model.nflex + self.model.nskin
+        if count > _MAX_SEGMENTS:
+            raise SimError(f"the scene has {count} geoms; a picture tells at most {_MAX_SEGMENTS} apart")
         geom_ids = self._compose(data, view)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = 1
         self._scene.flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = 1

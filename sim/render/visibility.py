@@ -1,4 +1,4 @@
-"""Which geoms light and laser meet: the same answer for rendering and for rays."""
+"""Which geoms light and laser meet: the same answer for rendering, for beams and for rays."""
 
 from __future__ import annotations
 

@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 
 from mission.__main__ import main
+from mission.explored_room import ExploredRoom
+from mission.surveyor import Surveyor
 
 pytestmark = pytest.mark.slow
 
@@ -108,8 +110,14 @@ def test_judged_by_parameters_that_leave_no_room_there_are_no_doors_and_nothing_
     assert [room["doors"] for room in read(tmp_path, "doors.json")["rooms"]] == [[], [], []]
 
 
-def test_a_mission_ends_after_as_many_rooms_as_are_asked_for(tmp_path: Path) -> None:
+def test_a_mission_ends_after_as_many_rooms_as_are_asked_for_and_keeps_none_of_their_scans(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rooms: list[ExploredRoom] = []
+    survey = Surveyor.survey
+    monkeypatch.setattr(Surveyor, "survey", lambda self, room: rooms.append(room) or survey(self, room))
     (tmp_path / "house.xml").write_text(HOUSE)
     options = ["--door", "open_door=95", "--max-rooms", "1", "--quiet", "--out", str(tmp_path)]
     assert main(["run", str(tmp_path / "house.xml"), *DRAFT, *options]) == 0
     assert len(read(tmp_path, "summary.json")["rooms"]) == 1
+    assert [(room.samples, room.coloured) for room in rooms] == [([], [])]

@@ -54,7 +54,7 @@ def test_switched_off_it_gives_its_renderer_back(scene: Scene, opened: list[Rend
     assert opened == []
 
 
-@pytest.mark.parametrize("part", ["Scanner", "Camera", "Hokuyo", "Robot"])
+@pytest.mark.parametrize("part", ["Camera", "Hokuyo", "Robot"])
 def test_whatever_part_fails_the_renderer_is_closed(
     scene: Scene, opened: list[Renderer], monkeypatch: pytest.MonkeyPatch, part: str
 ) -> None:

@@ -109,10 +109,12 @@ def test_a_plane_is_seen_from_its_front_only_and_to_its_end(world):
     assert (cast(scene, below).geoms == -1).all()
 
 
-def test_an_endless_plane_reaches_the_horizon(world):
+@pytest.mark.parametrize("far", [30, 3e5])
+@pytest.mark.parametrize("size", ["0 0 1", "9e5 0 1"])
+def test_an_endless_plane_reaches_the_horizon_from_anywhere(world, far, size):
     pose = np.eye(4)
-    pose[:3, 3] = 30, -20, 1.5
-    hits = cast(world('<geom type="plane" size="0 0 1"/>'), pose)
+    pose[:3, 3] = 20, -far, 1.5  # along y it never ends
+    hits = cast(world(f'<geom type="plane" size="{size}"/>'), pose)
     assert np.array_equal(hits.geoms == 0, np.repeat(ELEVATIONS[:, None] < 0, COLUMNS, axis=1))
     expected = np.maximum(-np.sin(ELEVATIONS), 0) / 1.5
     assert np.abs(hits.inverse_range - expected[:, None]).max() < 1e-6
@@ -136,7 +138,8 @@ def test_beams_pass_hidden_bodies_glass_and_collision_shapes(world):
     assert set(np.unique(hits.geoms)) == {-1, scene[0].geom("wall").id}
 
 
-def test_soft_things_are_met_as_they_are_drawn(world):
+def test_soft_things_are_met_as_they_are_drawn(capfd, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where MuJoCo writes what it warns of
     # A cloth of 1.5 m and 2 cm thick across the beam at 3 m, and a skin of 2 m at 4 m on the other side.
     cloth = '<flexcomp name="f" type="grid" count="4 4 1" spacing=".5 .5 .5" radius=".01" mass="1" euler="0 90 0"/>'
     model = mujoco.MjModel.from_xml_string(f"""<mujoco><worldbody><body name="b" pos="3 0 0">{cloth}</body>
@@ -146,11 +149,16 @@ def test_soft_things_are_met_as_they_are_drawn(world):
         </deformable></mujoco>""")
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
+    capfd.readouterr()
     hits = cast((model, data))
+    assert not capfd.readouterr().err
     assert (hits.geoms == -1).all()
     assert 1 / hits.inverse_range[ROWS // 2, 0] == pytest.approx(2.99, abs=0.001)
     assert 1 / hits.inverse_range[ROWS // 2, COLUMNS // 2] == pytest.approx(4, abs=0.001)
     assert (hits.inverse_range > 0).sum() > 1000
+    model.flex_group[:] = 3  # a collision shape
+    model.skin_rgba[:, 3] = 0.1  # glass
+    assert not cast((model, data)).inverse_range.any()
 
 
 def test_more_cores_do_not_change_what_is_met(world, monkeypatch):

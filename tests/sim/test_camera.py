@@ -7,6 +7,7 @@ import pytest
 
 from sim.camera import FLASH, Camera, CameraParameters
 from sim.render.materials import linear_from_srgb, materials_of
+from sim.shading import Window, seen_from_flash
 
 SMALL = CameraParameters(width=178, height=268, shots=7, noise=False, ambient=0)
 MEDIUM = SMALL.model_copy(update={"width": 356, "height": 536})
@@ -152,6 +153,28 @@ def test_without_something_in_between_nothing_is_in_shadow(world, renderer_of):
     u, v = map(int, project(photo, np.array([2.0, 0.2, -1])))
     floor = photo.image[v : v + 40, u - 20 : u + 20, 0]
     assert floor.min() > 0.5 * floor.max()
+
+
+def test_a_shadow_reaches_into_a_picture_from_what_stands_outside_it(world, renderer_of):
+    # The picture ends 29.4 deg to the left, at y = 0.56 on a wall 1 m away; a post 0.6 m away and from y = 0.35 on is
+    # just outside. From the flash at y = 0.09 its edge is thrown to 0.09 + 0.26 / 0.6 = 0.52.
+    post = '<geom type="box" size=".001 .05 2" pos=".601 .4 0" material="matt"/>'
+    photo = photograph(renderer_of, world(post + wall(1), MATT), MEDIUM)[0]
+    u, v = map(int, project(photo, np.array([1.0, 0.54, 0.2])))
+    lit, _ = map(int, project(photo, np.array([1.0, 0.48, 0.2])))
+    assert light(photo, v, u) < 0.02 < light(photo, v, lit)
+
+
+def test_a_flash_above_the_lens_throws_shadows_downward():
+    # An edge at half the depth, its lower border at the lens's own height: seen from 0.1 m above at focal length 100,
+    # what is 1 m away moves down by 10 pixels and the edge at 0.5 m by 20: ten rows below it are in its shadow.
+    rows, columns, margin = 60, 8, 25
+    window = Window(100.0, 100.0, np.zeros((1, columns), np.float32), np.zeros((rows, 1), np.float32))
+    near = np.arange(rows + 2 * margin)[:, None] < margin + 30 + 20
+    from_flash = np.where(near, 2, 1).astype(np.float32).repeat(columns, axis=1)
+    lens = np.where(np.arange(rows)[:, None] < 30, 2, 1).astype(np.float32).repeat(columns, axis=1)
+    lit = seen_from_flash(lens, from_flash, (0.0, 0.1), window, (0, margin))
+    assert np.flatnonzero(~lit[:, 4]).tolist() == list(range(30, 40))
 
 
 def test_ambient_light_fills_the_shadow(world, renderer_of):

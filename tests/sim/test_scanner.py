@@ -60,7 +60,7 @@ def test_a_pattern_covers_100_degrees_from_plus_60_all_round(name, beams):
     assert np.allclose(np.diff(pattern.azimuths()), step)
 
 
-def test_beams_agree_with_rays_to_a_tenth_of_a_millimetre(world, true_ranges):
+def test_beams_agree_with_rays_to_a_few_micrometres(world, true_ranges):
     scene = world(ROOM)
     place = pose(0.3, -0.2, 1.2, yaw=0.47, tilt=0.03)
     scan = scan_once(scene, place, EXACT.model_copy(update={"pattern": "panorama_60"}))
@@ -70,7 +70,7 @@ def test_beams_agree_with_rays_to_a_tenth_of_a_millimetre(world, true_ranges):
     measured = scan.ranges[rows, columns]
     known = true >= 1.5
     assert known.mean() > 0.9
-    assert np.abs(measured - true)[known].max() < 1e-4
+    assert np.abs(measured - true)[known].max() < 5e-6
     assert np.isnan(measured[~known]).all()
 
 
@@ -94,7 +94,7 @@ def test_round_things_are_measured_as_round(world, true_ranges):
 
 
 def test_beams_at_the_edges_of_thin_and_faceted_things_agree_with_rays_too(world, true_ranges):
-    # 60 slats of 2 mm, and a gem whose facets are a few pixels wide: at draft every second beam meets an edge.
+    # 60 slats of 2 mm, and a gem whose facets are a few beams wide: at draft every second beam meets an edge.
     slats = "".join(f'<geom type="box" size=".001 .02 2" pos="2 {-1.5 + k / 20} 0" euler="0 0 20"/>' for k in range(60))
     rng = np.random.default_rng(0)
     points = rng.normal(size=(400, 3))
@@ -108,9 +108,7 @@ def test_beams_at_the_edges_of_thin_and_faceted_things_agree_with_rays_too(world
     some = rng.choice(scan.ranges.size, 100_000, replace=False)
     rows, columns, true = beams_that_meet(scene, true_ranges, scan, place, some)
     assert len(rows) > 20_000
-    exact = np.abs(scan.ranges[rows, columns] - true) < 5e-5
-    assert exact.mean() > 0.995
-    assert (np.abs(scan.ranges[rows, columns] - true) < 0.01).mean() > 0.999  # narrower than a pixel, it may be missed
+    assert np.abs(scan.ranges[rows, columns] - true).max() < 5e-6  # NaN would not be below
 
 
 def test_a_cloth_is_seen(world):

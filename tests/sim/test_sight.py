@@ -44,7 +44,7 @@ def test_a_picture_has_the_depth_that_mujoco_draws_and_its_geoms(world, renderer
 
 @pytest.mark.parametrize("kind", ["panorama", "picture"])
 def test_slopes_are_the_normal_and_lead_to_the_range(world, kind):
-    # A wall at x = 2 has the plane x / 2 = 1, a ball of 0.5 m at (0, 3, 0) normals through its middle.
+    # A wall at x = 2 has the plane x / 2 = 1, a ball of 0.5 m at (1.2, 0.3, 0) normals through its middle.
     model, data = world('<geom type="box" size=".1 9 9" pos="2.1 0 0"/><geom size=".5" pos="1.2 .3 0"/>')
     angles = np.linspace(0.4, -0.4, 41)
     if kind == "panorama":

@@ -1,4 +1,7 @@
-"""The floor: what MuJoCo's renderer needs for the pictures that a mission shows its sensors."""
+"""The floor: what MuJoCo's renderer would need for the pictures that scans and photographs can be made from.
+
+Of these, ours renders the colours only: the rest is drawn on the sensors' own grids.
+"""
 
 from __future__ import annotations
 
