@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from detector.room import DetectorError
 from mission.config import read_config
-from mission.errors import MissionError, UsageError
+from mission.errors import MissionError, RecordingError, UsageError
 from mission.events import Event
 from mission.folders import (
     BELOW,
@@ -145,12 +145,15 @@ def carry_out(
 
 
 def _write_reports(folder: Path, report: Report, stopwatch: Stopwatch, start: float) -> None:
-    write_json(folder / "doors.json", report.doors())
     wall_clock = perf_counter() - start
     scans = sum(room.scans for room in report.rooms.values())
     cost = recording_cost(folder, scans=scans, seconds=stopwatch.seconds.get("recording", 0.0), wall_clock=wall_clock)
     summary = {"arguments": sys.argv[1:]} | report.summary(stopwatch.seconds, wall_clock) | {"recording": cost}
-    write_json(folder / "summary.json", summary)
+    for name, content in (("doors.json", report.doors()), ("summary.json", summary)):
+        try:
+            write_json(folder / name, content)
+        except OSError as error:
+            raise RecordingError(folder / name, error) from error
 
 
 def _pump(mission: Mission, sinks: list[Sink], interrupts: Interrupts, stopwatch: Stopwatch) -> int:
@@ -172,7 +175,7 @@ def _pump(mission: Mission, sinks: list[Sink], interrupts: Interrupts, stopwatch
         try:
             sink.handle(last)
         except Exception as error:  # the sink that broke the mission may break again; the others must end well
-            print(f"error: {type(sink).__name__} cannot record the end: {error}", file=sys.stderr)
+            print(f"error: the end is not recorded: {error}", file=sys.stderr)
     return status
 
 

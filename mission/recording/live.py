@@ -106,6 +106,10 @@ def _bind(port: int) -> int:
         return int(probe.getsockname()[1])
 
 
+_WRITTEN_WITHIN = 60.0
+"""What takes longer to write never ends: Rerun would wait for a full disk [s]."""
+
+
 def flush(rec: rr.RecordingStream, *, streams: Sequence[Stream]) -> bool:
     """Bring all that was recorded into the file and to the viewers.
 
@@ -113,7 +117,7 @@ def flush(rec: rr.RecordingStream, *, streams: Sequence[Stream]) -> bool:
         Whether every viewer is still there.
     """
     try:
-        rec.flush()
+        rec.flush(timeout_sec=_WRITTEN_WITHIN)
     except RuntimeError as error:
         if not streams or "gRPC" not in str(error):  # the file comes first: what it says goes before the viewers'
             raise

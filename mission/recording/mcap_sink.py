@@ -25,6 +25,7 @@ from foxglove.messages import (
 )
 from numpy.typing import NDArray
 
+from mission.errors import RecordingError
 from mission.events import (
     Coloured,
     DoorsEvaluated,
@@ -71,6 +72,7 @@ class McapSink:
     def __init__(self, path: Path) -> None:
         """Record into a file, which is overwritten."""
         self._path = path
+        self._broken = False
         self._last_log_time = 0
         self._joints: tuple[str, ...] = ()
         self._frames = RoomFrames()
@@ -90,10 +92,20 @@ class McapSink:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._writer.close()
+        try:
+            self._writer.close()
+        except RuntimeError as failure:
+            if not self._broken:
+                raise RecordingError(self._path, failure) from failure
 
     def handle(self, event: Event) -> None:
-        """Record one event; when this returns, the event is in the file and its chunk is closed."""
+        """Record one event; when this returns, the event is in the file and its chunk is closed.
+
+        Raises:
+            RecordingError: The file cannot be written; what comes after is lost.
+        """
+        if self._broken:
+            return
         self._step = event.step
         self._now = EPOCH + event.time
         self._record(event)
@@ -106,7 +118,11 @@ class McapSink:
             for part in getattr(event, PARTS[type(event)]):
                 self._log(topic_of_parts(type(event)), part)
         self._log(topic_of(type(event)), event)  # the last of its messages: whoever reads it has them all
-        self._writer.flush()
+        try:
+            self._writer.flush()
+        except RuntimeError as failure:
+            self._broken = True
+            raise RecordingError(self._path, failure) from failure
 
     @singledispatchmethod
     def _record(self, event: Event) -> None:

@@ -13,6 +13,7 @@ from typing import Self
 import numpy as np
 import rerun as rr
 
+from mission.errors import RecordingError
 from mission.events import DoorsDetected, DoorsEvaluated, Event, MissionStarted, Structured
 from mission.recording import entities
 from mission.recording.blueprint import WallTab, blueprint, outlook
@@ -60,6 +61,7 @@ class RerunSink:
         self._outlook = outlook(np.zeros((1, 3)))
         self._walls: list[WallTab] = []
         self._shown: tuple[WallTab, ...] = ()
+        self._broken = False
         self._known_rooms: set[int] = set()
         self._judged_rooms: set[int] = set()
 
@@ -76,7 +78,13 @@ class RerunSink:
                 self._send_layout(self._walls)
 
     def handle(self, event: Event) -> None:
-        """Record one event; when this returns, the event is in the file."""
+        """Record one event; when this returns, the event is in the file.
+
+        Raises:
+            RecordingError: The file cannot be written; what comes after is lost.
+        """
+        if self._broken:
+            return
         if not self._drawers:
             self._open(event)
         self._scan_number = getattr(event, "scan_number", self._scan_number)
@@ -90,7 +98,13 @@ class RerunSink:
         self._flush()
 
     def _flush(self) -> None:
-        followed = flush(self._rec, streams=self._streams)
+        if self._broken:
+            return
+        try:
+            followed = flush(self._rec, streams=self._streams)
+        except RuntimeError as failure:
+            self._broken = True
+            raise RecordingError(self._path, failure) from failure
         if self._followed and not followed:
             logger.warning("a viewer is gone; the recording goes on")
         self._followed = followed

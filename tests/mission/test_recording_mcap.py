@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -14,6 +15,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
+from mission.errors import RecordingError
 from mission.events import Coloured, Cost, Drove, Event, MissionFinished, MissionStarted
 from mission.recording.drawing import thin
 from mission.recording.mcap_messages import xyzw
@@ -99,6 +101,32 @@ def test_a_mission_that_breaks_leaves_everything_so_far(tmp_path: Path) -> None:
             sink.handle(event)
         raise KeyboardInterrupt
     assert [step for _, step in events_of(path)] == list(range(7))
+
+
+def test_a_file_that_cannot_grow_is_said_once_and_holds_what_was_written_before(tmp_path: Path) -> None:
+    path, events = tmp_path / "full.mcap", story()
+    with McapSink(path) as sink:
+        sink.handle(events[0])
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (path.stat().st_size + 1000, limits[1]))
+        try:
+            with pytest.raises(RecordingError, match=r"cannot write .*full\.mcap: "):
+                for event in events[1:]:
+                    sink.handle(event)
+            sink.handle(events[-1])  # lost, without a word
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    got = []
+    with pytest.raises(DamagedError):
+        for event in read_events(path):
+            got.append(event.step)
+    assert got[0] == 0
+
+
+def test_on_a_full_disk_the_reason_is_the_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert str(RecordingError(tmp_path / "a.mcap", "strange")).endswith("a.mcap: strange")
+    monkeypatch.setattr("mission.errors._FULL", float("inf"))
+    assert str(RecordingError(tmp_path / "a.mcap", "strange")).endswith("a.mcap: no space left on the disk")
 
 
 def test_every_handled_event_is_in_the_file_before_it_is_closed(tmp_path: Path) -> None:
