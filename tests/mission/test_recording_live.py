@@ -107,7 +107,7 @@ def test_a_viewer_that_goes_away_takes_nothing_with_it(tmp_path: Path, caplog: p
 
 
 def test_what_the_file_says_is_an_error_with_a_viewer_as_without(monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(self: rr.RecordingStream) -> None:
+    def full(self: rr.RecordingStream, **_: float) -> None:
         raise RuntimeError("file: No space left on device")
 
     monkeypatch.setattr(rr.RecordingStream, "flush", full)
