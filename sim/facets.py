@@ -122,10 +122,11 @@ def _find_windows(triangles: Triangles, azimuths: NDArray[np.float64], grid: Gri
     for t in range(len(triangles.corners)):
         a, b, c = triangles.corners[t, 0], triangles.corners[t, 1], triangles.corners[t, 2]
         first, last = _window(azimuths[a], azimuths[b], azimuths[c], grid)
-        side = triangles.sides[t]
-        depth, length = _facing(triangles.vertices[a], triangles.vertices[b], triangles.vertices[c])[:2]
-        if abs(depth) <= _EDGE_ON * length or (side == FRONT and depth > 0) or (side == BACK and depth < 0):
-            last = first - 1
+        if first <= last:
+            side = triangles.sides[t]
+            depth, length = _facing(triangles.vertices[a], triangles.vertices[b], triangles.vertices[c])[:2]
+            if abs(depth) <= _EDGE_ON * length or (side == FRONT and depth > 0) or (side == BACK and depth < 0):
+                last = first - 1
         windows[t, 0], windows[t, 1] = first, last
 
 
@@ -216,6 +217,15 @@ def _rows_within(edges: NDArray[np.float64], ahead: float, aside: float, grid: G
 
 
 @compiled
+def _columns_within(outlines: Outlines, t: int, turn: int, first: int, end: int) -> tuple[int, int]:
+    """Those of the columns `first` to `end` - 1 that a triangle can be seen in, as a range.
+
+    A window that begins before the grid's end may go on at its start: it is looked at once, and once a turn back.
+    """
+    return max(outlines.windows[t, 0] - turn, first), min(outlines.windows[t, 1] - turn + 1, end)
+
+
+@compiled
 def draw_facets(outlines: Outlines, grid: Grid, strip: Strip) -> None:
     """Draw triangles on a strip, before what lies behind them.
 
@@ -226,17 +236,13 @@ def draw_facets(outlines: Outlines, grid: Grid, strip: Strip) -> None:
     """
     columns, end = len(grid.ahead), strip.first + len(strip.surfaces)
     for t in range(len(outlines.windows)):
-        for turn in (0, columns):  # a window that begins before the grid's end may go on at its start
-            start = max(outlines.windows[t, 0] - turn, strip.first)
-            for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
-                ahead, aside = grid.ahead[column], grid.aside[column]
+        for turn in (0, columns):
+            start, stop = _columns_within(outlines, t, turn, strip.first, end)
+            for column in range(start, stop):
+                ahead, aside, k = grid.ahead[column], grid.aside[column], column - strip.first
                 first, last = _rows_within(outlines.edges[t], ahead, aside, grid)
                 level = outlines.planes[t, 0] * ahead + outlines.planes[t, 1] * aside
-                upward = outlines.planes[t, 2]
-                inverse_range, surfaces = (
-                    strip.inverse_range[column - strip.first],
-                    strip.surfaces[column - strip.first],
-                )
+                upward, inverse_range, surfaces = outlines.planes[t, 2], strip.inverse_range[k], strip.surfaces[k]
                 for row in range(first, last + 1):
                     near = np.float32(level * grid.level[row] + upward * grid.rise[row])
                     nearer = near > inverse_range[row]
@@ -267,27 +273,24 @@ def slopes_of_facets(strip: Strip, outlines: Outlines, slopes: NDArray[np.float3
                     slopes[i, k, row] = 0
 
 
+@compiled
 def spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.int32]:
     """Which beams of the columns `first` to `end` - 1 pass through triangles.
 
     Returns:
         (N, 4) owner of a triangle, column, first and last row.
     """
-    return np.asarray(_spans(outlines, grid, first, end))
-
-
-@compiled
-def _spans(outlines: Outlines, grid: Grid, first: int, end: int) -> NDArray[np.int32]:
     columns, count = len(grid.ahead), 0
     for t in range(len(outlines.windows)):
         for turn in (0, columns):
-            count += max(min(outlines.windows[t, 1] - turn + 1, end) - max(outlines.windows[t, 0] - turn, first), 0)
+            start, stop = _columns_within(outlines, t, turn, first, end)
+            count += max(stop - start, 0)
     found = np.empty((count, 4), np.int32)
     count = 0
     for t in range(len(outlines.windows)):
         for turn in (0, columns):
-            start = max(outlines.windows[t, 0] - turn, first)
-            for column in range(start, min(outlines.windows[t, 1] - turn + 1, end)):
+            start, stop = _columns_within(outlines, t, turn, first, end)
+            for column in range(start, stop):
                 top, bottom = _rows_within(outlines.edges[t], grid.ahead[column], grid.aside[column], grid)
                 if top <= bottom:
                     found[count, 0], found[count, 1] = outlines.owners[t], column
